@@ -1,0 +1,51 @@
+// Moving octrees: integer translation (AN84), arbitrary rotation and translation (WA87), and moving objects.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "blackleaf/motion.h"
+#include "blackleaf/octree.h"
+#include "blackleaf/work.h"
+
+namespace blackleaf {
+
+/// What to do when a moved solid leaves the universe.
+enum class Leaving {
+  error,  // throw Error(out_of_universe) that says by how much and on which side
+  clip,   // drop what is outside
+  grow,   // double the universe until it holds everything; the frame keeps world coordinates
+};
+
+/// The solid shifted by whole voxels, lossless. Throws Error(out_of_universe) by `leaving`; when even a universe of
+/// depth 20 is too small, always. O(words of source and target) (AN84, section 3).
+Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Leaving leaving = Leaving::error,
+                 const Work& work = {});
+
+/// The solid moved by X' = RX + T: a target voxel is black iff its centre, moved back by FixedMotion, lies in the closed
+/// solid. Exact, and the same for every thread count. A solid leaves the universe when a corner of a moved black cube
+/// lies outside by more than 2^-20 voxels (no voxel centre is then lost). O(surface of source and target)
+/// (WA87, sections 3 and 4).
+Octree move(const Octree& octree, const Motion& motion, Leaving leaving = Leaving::error, const Work& work = {});
+
+/// A compact source tree and its current motion: moving composes motions and never touches the source, so errors do not
+/// add up (WA87, section 3).
+class MovingObject {
+ public:
+  explicit MovingObject(Octree source, Motion motion = {}) : source_(std::move(source)), motion_(motion) {}
+
+  const Octree& source() const { return source_; }
+  const Motion& motion() const { return motion_; }
+  /// The object after a further motion: (R'R, R'T + T').
+  MovingObject moved(const Motion& further) const { return MovingObject(source_, further * motion_); }
+  /// The octree at the current motion, computed afresh from the source.
+  Octree octree(Leaving leaving = Leaving::error, const Work& work = {}) const {
+    return move(source_, motion_, leaving, work);
+  }
+
+ private:
+  Octree source_;
+  Motion motion_;
+};
+
+}  // namespace blackleaf
