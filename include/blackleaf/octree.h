@@ -81,6 +81,10 @@ class Node {
 
   /// A node of one colour that belongs to no tree, e.g. the space outside a universe.
   static Node uniform(int level, Colour colour) { return Node(nullptr, 0, level, colour); }
+  /// A node of level 2 that belongs to no tree, from its 64 voxels.
+  static Node from_brick(std::uint64_t bits) {
+    return Node(nullptr, bits, 2, bits == 0 ? Colour::white : ~bits == 0 ? Colour::black : Colour::gray);
+  }
 
  private:
   friend class Octree;

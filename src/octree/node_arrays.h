@@ -1,0 +1,72 @@
+// NodeArrays: the one place where octree nodes are made.
+//
+// A producer hands over the eight children of a node, in whatever way it got them, and receives the node, condensed. A
+// node's gray children are stored at that moment, never before, so nothing is stored that is later thrown away. Called
+// in post-order along the Millar curve, this yields the canonical storage order of octree.h.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "blackleaf/curve.h"
+#include "blackleaf/octree.h"
+
+namespace blackleaf::detail {
+
+/// A finished node: its colour and, if gray, its word.
+struct Subtree {
+  std::uint64_t word = 0;
+  Colour colour = Colour::white;
+
+  static Subtree uniform(Colour colour) { return {0, colour}; }
+  static Subtree brick(std::uint64_t bits) {
+    return {bits, bits == 0 ? Colour::white : ~bits == 0 ? Colour::black : Colour::gray};
+  }
+};
+
+class NodeArrays {
+ public:
+  /// The node of the given level whose children, by octant, are these. Requires: 3 <= level <= 20.
+  Subtree close(int level, const std::array<Subtree, 8>& children) {
+    unsigned black = 0, gray = 0;
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      black |= (children[octant].colour == Colour::black ? 1u : 0u) << octant;
+      gray |= (children[octant].colour == Colour::gray ? 1u : 0u) << octant;
+    }
+    if (gray == 0 && (black == 0 || black == 0xFF)) return Subtree::uniform(black ? Colour::black : Colour::white);
+    auto& below = levels_[static_cast<std::size_t>(level - 1)];
+    const std::uint64_t first = gray ? below.size() : 0;
+    for (unsigned rest = gray; rest; rest &= rest - 1)
+      below.push_back(children[static_cast<unsigned>(std::countr_zero(rest))].word);
+    return {black | gray << 8 | first << 16, Colour::gray};
+  }
+
+  /// Appends the nodes of a later stretch of the curve and returns its top node as a node of this one.
+  /// `level` is the level of that node. `stretch` is left empty.
+  Subtree append(NodeArrays& stretch, Subtree top, int level);
+
+  /// The octree with this root. Requires: `root` was made by this object; for depth 1 its word has 8 bits.
+  /// Leaves the object empty.
+  Octree finish(int depth, Subtree root, Frame frame);
+
+  std::size_t size() const;
+
+ private:
+  std::array<std::vector<std::uint64_t>, kMaxDepth + 1> levels_;
+};
+
+/// A word of level >= 3 whose children moved up by `offset` places.
+inline std::uint64_t shifted(std::uint64_t word, std::uint64_t offset) {
+  return (word & 0xFF00) ? word + (offset << 16) : word;
+}
+
+/// The root as a node of level 2 at least: a depth-1 tree becomes octant 0 of a brick whose other voxels are white.
+inline Node brick_level_root(const Octree& octree) {
+  const Node root = octree.root();
+  if (octree.depth() > 1) return root;
+  return Node::from_brick(root.is_gray() ? root.word() : root.is_black() ? 0xFF : 0);
+}
+
+}  // namespace blackleaf::detail

@@ -1,0 +1,111 @@
+#include "blackleaf/octree.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "node_arrays.h"
+#include "storage.h"
+
+namespace blackleaf {
+
+Octree::Octree(int depth, Colour colour, Frame frame)
+    : storage_(std::make_shared<const Storage>(Storage{depth, colour, nullptr, std::move(frame)})) {
+  assert(depth >= 1 && depth <= kMaxDepth && colour != Colour::gray);
+}
+
+Octree::Octree(std::shared_ptr<const Storage> storage) : storage_(std::move(storage)) {}
+
+int Octree::depth() const { return storage_->depth; }
+
+const Frame& Octree::frame() const { return storage_->frame; }
+
+Octree Octree::with_frame(Frame frame) const {
+  Storage storage = *storage_;
+  storage.frame = std::move(frame);
+  return Octree(std::make_shared<const Storage>(std::move(storage)));
+}
+
+Node Octree::root() const {
+  const Storage& s = *storage_;
+  if (s.root != Colour::gray) return Node::uniform(s.depth, s.root);
+  const auto level = static_cast<std::size_t>(s.depth);
+  return Node(s.tree->levels.data(), *s.tree->levels[level], s.depth, Colour::gray);
+}
+
+bool Octree::contains(std::int64_t x, std::int64_t y, std::int64_t z) const {
+  const std::int64_t n = side();
+  if (x < 0 || y < 0 || z < 0 || x >= n || y >= n || z >= n) return false;
+  Node node = root();
+  while (node.is_gray()) {
+    const int bit = node.level() - 1;
+    node = node.child(static_cast<int>((x >> bit & 1) | (y >> bit & 1) << 1 | (z >> bit & 1) << 2));
+  }
+  return node.is_black();
+}
+
+std::span<const std::uint64_t> Octree::words(int level) const {
+  assert(level >= 0 && level <= kMaxDepth);
+  if (!storage_->tree) return {};
+  const auto k = static_cast<std::size_t>(level);
+  return {storage_->tree->levels[k], storage_->tree->counts[k]};
+}
+
+std::size_t Octree::memory_bytes() const {
+  std::size_t bytes = sizeof(Octree) + sizeof(Storage);
+  if (storage_->tree) bytes += sizeof(detail::Words) + storage_->tree->words.size() * sizeof(std::uint64_t);
+  return bytes;
+}
+
+bool operator==(const Octree& a, const Octree& b) {
+  const auto &s = *a.storage_, &t = *b.storage_;
+  if (s.depth != t.depth || s.root != t.root) return false;
+  if (s.tree == t.tree) return true;
+  return s.tree->counts == t.tree->counts && s.tree->words == t.tree->words;
+}
+
+namespace detail {
+
+Subtree NodeArrays::append(NodeArrays& stretch, Subtree top, int level) {
+  std::array<std::uint64_t, kMaxDepth + 2> offset{};
+  for (std::size_t k = 0; k < levels_.size(); ++k) offset[k] = levels_[k].size();
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    auto& from = stretch.levels_[k];
+    if (k >= 3)
+      for (auto& word : from) word = shifted(word, offset[k - 1]);
+    levels_[k].insert(levels_[k].end(), from.begin(), from.end());
+    std::vector<std::uint64_t>().swap(from);
+  }
+  if (top.colour == Colour::gray && level >= 3) top.word = shifted(top.word, offset[static_cast<std::size_t>(level - 1)]);
+  return top;
+}
+
+Octree NodeArrays::finish(int depth, Subtree root, Frame frame) {
+  if (root.colour != Colour::gray) {
+    *this = {};
+    return Octree(depth, root.colour, std::move(frame));
+  }
+  levels_[static_cast<std::size_t>(depth)].push_back(root.word);
+  auto tree = std::make_shared<Words>();
+  tree->words.reserve(size());
+  for (std::size_t k = levels_.size(); k-- > 0;) {
+    tree->counts[k] = levels_[k].size();
+    tree->words.insert(tree->words.end(), levels_[k].begin(), levels_[k].end());
+    std::vector<std::uint64_t>().swap(levels_[k]);
+  }
+  const std::uint64_t* next = tree->words.data();
+  for (std::size_t k = levels_.size(); k-- > 0;) {
+    tree->levels[k] = next;
+    next += tree->counts[k];
+  }
+  return Octree(std::make_shared<const Octree::Storage>(
+      Octree::Storage{depth, Colour::gray, std::move(tree), std::move(frame)}));
+}
+
+std::size_t NodeArrays::size() const {
+  std::size_t total = 0;
+  for (const auto& level : levels_) total += level.size();
+  return total;
+}
+
+}  // namespace detail
+}  // namespace blackleaf

@@ -1,0 +1,165 @@
+// produce: every octree that is computed node by node is computed here, along the Millar curve, on all cores.
+//
+// A producer answers questions about target nodes and carries what it knows of a node down to the node's children:
+//
+//   struct Producer {
+//     using Task = ...;                                   // what is known about one target node; cheap to copy
+//     Task root() const;
+//     Colour classify(Task&, const Cube&) const;          // black or white if all of it is; gray: split it
+//     Task child(const Task&, const Cube& child, int octant) const;
+//     std::uint64_t brick(const Task&, const Cube&) const; // the 64 voxels of a level-2 node
+//   };
+//
+// Its functions are called from many threads. In a universe of depth 1 the root is asked for as a brick whose octant 0
+// is the universe; what it says of the other voxels is ignored (classify must then not answer black unless octant 0 is
+// black and not white unless it is white).
+//
+// The curve is cut into the stretches of nodes of one level; each is produced into arrays of its own and they are joined
+// in curve order, as MHF92 (section 4) joins its processors' tuples. The result does not depend on the cut.
+#pragma once
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <vector>
+
+#include "blackleaf/error.h"
+#include "blackleaf/work.h"
+#include "node_arrays.h"
+
+namespace blackleaf::detail {
+
+/// Reports progress from one thread at a time and turns a refusal into Error(cancelled).
+class Progress {
+ public:
+  explicit Progress(const Work& work, std::size_t steps) : work_(work), steps_(steps) {}
+  void step() {
+    const std::size_t done = ++done_;
+    if (!work_.progress) return;
+    const std::lock_guard lock(mutex_);
+    if (!work_.progress(static_cast<double>(done) / static_cast<double>(steps_)))
+      throw Error(ErrorCode::cancelled, "interrupted");
+  }
+
+ private:
+  const Work& work_;
+  std::size_t steps_;
+  std::atomic<std::size_t> done_{0};
+  std::mutex mutex_;
+};
+
+template <class Producer>
+class Production {
+  using Task = typename Producer::Task;
+
+ public:
+  Production(const Producer& producer, int depth, const Work& work) : producer_(producer), depth_(depth), work_(work) {}
+
+  Octree run(Frame frame) {
+    const Cube root{0, 0, 0, depth_ < 2 ? 2 : depth_};
+    NodeArrays arrays;
+    Subtree top;
+    if (depth_ <= kSerialDepth) {
+      Task task = producer_.root();
+      top = serial(task, root, 0, arrays);
+      if (depth_ == 1) top = byte(top);
+    } else {
+      outline(producer_.root(), root, 0);
+      Progress progress(work_, stretches_.size());
+      const int threads = work_.threads > 0 ? work_.threads : oneapi::tbb::this_task_arena::max_concurrency();
+      if (threads == 1) {
+        for (Stretch& s : stretches_) {
+          s.result = serial(s.task, s.cube, s.table, arrays);
+          progress.step();
+        }
+      } else {
+        std::vector<NodeArrays> own(stretches_.size());
+        oneapi::tbb::task_arena arena(threads);
+        arena.execute([&] {
+          oneapi::tbb::parallel_for(std::size_t{0}, stretches_.size(), [&](std::size_t i) {
+            Stretch& s = stretches_[i];
+            s.result = serial(s.task, s.cube, s.table, own[i]);
+            progress.step();
+          });
+        });
+        for (std::size_t i = 0; i < own.size(); ++i)
+          stretches_[i].result = arrays.append(own[i], stretches_[i].result, stretches_[i].cube.level);
+      }
+      std::size_t next_part = 0, next_stretch = 0;
+      top = join(root, 0, next_part, next_stretch, arrays);
+    }
+    return arrays.finish(depth_, top, std::move(frame));
+  }
+
+ private:
+  static constexpr int kSerialDepth = 5;    // smaller universes are not worth cutting
+  static constexpr int kStretchLevels = 3;  // stretches are nodes this far below the root: at most 512
+
+  struct Stretch {
+    Task task;
+    Cube cube;
+    std::uint8_t table;
+    Subtree result;
+  };
+
+  static Subtree byte(Subtree top) {
+    if (top.colour != Colour::gray) return top;
+    const std::uint64_t bits = top.word & 0xFF;
+    return {bits, bits == 0 ? Colour::white : bits == 0xFF ? Colour::black : Colour::gray};
+  }
+
+  Subtree serial(Task& task, const Cube& cube, std::uint8_t table, NodeArrays& arrays) const {
+    const Colour colour = producer_.classify(task, cube);
+    if (colour != Colour::gray) return Subtree::uniform(colour);
+    if (cube.level == 2) return Subtree::brick(producer_.brick(task, cube));
+    std::array<Subtree, 8> children;
+    for (const curve::Step step : curve::kSteps[table]) {
+      const Cube child = cube.child(step.octant);
+      Task below = producer_.child(task, child, step.octant);
+      children[step.octant] = serial(below, child, step.table, arrays);
+    }
+    return arrays.close(cube.level, children);
+  }
+
+  // Walks the top of the tree in curve order; writes what it decides to parts_ and leaves the rest as stretches.
+  void outline(Task task, const Cube& cube, std::uint8_t table) {
+    if (cube.level == depth_ - kStretchLevels) {
+      parts_.push_back(Colour::gray);
+      stretches_.push_back({std::move(task), cube, table, {}});
+      return;
+    }
+    const Colour colour = producer_.classify(task, cube);
+    parts_.push_back(colour);
+    if (colour != Colour::gray) return;
+    for (const curve::Step step : curve::kSteps[table]) {
+      const Cube child = cube.child(step.octant);
+      outline(producer_.child(task, child, step.octant), child, step.table);
+    }
+  }
+
+  Subtree join(const Cube& cube, std::uint8_t table, std::size_t& part, std::size_t& stretch, NodeArrays& arrays) const {
+    const Colour colour = parts_[part++];
+    if (cube.level == depth_ - kStretchLevels) return stretches_[stretch++].result;
+    if (colour != Colour::gray) return Subtree::uniform(colour);
+    std::array<Subtree, 8> children;
+    for (const curve::Step step : curve::kSteps[table])
+      children[step.octant] = join(cube.child(step.octant), step.table, part, stretch, arrays);
+    return arrays.close(cube.level, children);
+  }
+
+  const Producer& producer_;
+  const int depth_;
+  const Work& work_;
+  std::vector<Colour> parts_;       // verdicts on the nodes above the stretches, in pre-order along the curve
+  std::vector<Stretch> stretches_;  // in curve order
+};
+
+template <class Producer>
+Octree produce(const Producer& producer, int depth, Frame frame, const Work& work) {
+  return Production<Producer>(producer, depth, work).run(std::move(frame));
+}
+
+}  // namespace blackleaf::detail
