@@ -1,0 +1,27 @@
+// Line drawings in files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "blackleaf/drawing.h"
+
+namespace blackleaf {
+
+struct PageOptions {
+  double width_mm = 0, height_mm = 0;  // page; 0: the drawing's own shape, 180 mm on its longer side
+  double margin_mm = 10;
+  double pen_width_mm = 0.25;
+  double dots_per_inch = 200;          // PNG only
+};
+
+/// SVG text: millimetres, one <polyline> a stroke, metadata with the view.
+std::string to_svg(const LineDrawing& drawing, const PageOptions& page = {});
+/// JSON text: {"view": [x,y,z], "right": [..], "up": [..], "strokes": [[[u,v],[u,v]],...]}, voxel units.
+std::string to_json(const LineDrawing& drawing);
+
+/// Writes .svg, .json, .png or .pdf by suffix. Atomic. Throws Error(io), and Error(bad_argument) for other suffixes or
+/// a page too small for its margins.
+void write_drawing(const LineDrawing& drawing, const std::filesystem::path& path, const PageOptions& page = {});
+
+}  // namespace blackleaf

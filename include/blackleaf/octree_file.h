@@ -1,0 +1,37 @@
+// .octree files: docs/FILE_FORMAT.md draws them byte by byte.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "blackleaf/octree.h"
+#include "blackleaf/work.h"
+
+namespace blackleaf {
+
+/// Writes an octree with its frame and metadata (a JSON object as text, e.g. where the object comes from; "{}" if there
+/// is nothing to say). The same octree, frame and metadata give the same bytes. Written to a temporary name beside
+/// `path`, flushed to disk and renamed: a crash leaves the old file or the new one. Throws Error(io).
+void save(const Octree& octree, const std::filesystem::path& path, const std::string& metadata = "{}");
+/// The same bytes in memory.
+std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& metadata = "{}");
+
+struct OctreeFile {
+  Octree octree;
+  std::string metadata;        // JSON object
+  std::uint64_t file_bytes = 0;
+};
+/// Reads and checks everything: magic, version, checksums, counts; trusts no length. Throws Error(io) when the file
+/// cannot be read, Error(bad_input) that names the first thing wrong.
+OctreeFile load(const std::filesystem::path& path);
+/// The same from memory; `name` stands for the file in messages.
+OctreeFile from_bytes(const std::vector<std::uint8_t>& bytes, const std::string& name = "octree data");
+
+/// Writes a file so that a crash or an error leaves the old file or the new one, never a part: a temporary name in the
+/// same folder, fsync, rename. Throws Error(io).
+void write_atomically(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
+void write_atomically(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace blackleaf

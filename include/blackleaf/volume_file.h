@@ -1,0 +1,35 @@
+// Voxel volumes in and out: NRRD, NIfTI, MetaImage and whatever else ITK reads.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "blackleaf/octree.h"
+#include "blackleaf/work.h"
+
+namespace blackleaf {
+
+struct VolumeOptions {
+  /// Values from low to high, both included, are inside; a side left out is unbounded. NaN is never inside.
+  std::optional<double> low, high;
+  /// Exactly this value is inside. At most one of range and label may be given; without either, any value > 0 is inside.
+  std::optional<double> label;
+  int depth = 0;        // 0: the smallest universe that holds the volume
+  bool centre = false;  // centre the volume in the universe instead of putting it at the corner
+};
+
+/// The octree of a volume file; its frame is the file's geometry (ITK's LPS convention, unit mm; for universe corner,
+/// not first voxel centre). Throws Error(io) when the file cannot be read, Error(bad_input) when it is not a volume,
+/// has no voxels, not three dimensions (trailing dimensions of one are fine), several components a voxel, or does not
+/// fit the universe.
+Octree read_volume(const std::filesystem::path& path, const VolumeOptions& options = {}, const Work& work = {});
+
+/// True iff the suffix is one that volumes have: .nrrd .nhdr .nii .nii.gz .mha .mhd .hdr .img(.gz) ...
+bool is_volume_name(const std::filesystem::path& path);
+
+/// Writes the solid as a 0/1 volume (uint8, x fastest) of the whole universe, or of its bounding box if `crop` (one
+/// white voxel for an empty solid), with the frame's geometry: .nrrd, .nii, .nii.gz, .mha by suffix. Atomic.
+/// Throws Error(io), and Error(bad_argument) for other suffixes and for volumes beyond 2^33 voxels.
+void write_volume(const Octree& octree, const std::filesystem::path& path, bool crop = false);
+
+}  // namespace blackleaf
