@@ -58,6 +58,9 @@ struct FixedMotion {
   std::array<std::int64_t, 3> inverse_translation{};              // b
   std::array<std::int64_t, 3> forward_translation{};              // round(2^38 T), for questions about the target's extent
 
+  /// The same motion followed by a shift of whole voxels, without any rounding. Requires: |by_i| <= 2^20.
+  FixedMotion shifted(const std::array<std::int64_t, 3>& by) const;
+
   /// True iff the motion only permutes and reverses axes and shifts by whole voxels: nothing is resampled.
   bool is_lattice_symmetry() const;
 };

@@ -24,7 +24,7 @@ Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Le
 
 /// The solid moved by X' = RX + T: a target voxel is black iff its centre, moved back by FixedMotion, lies in the closed
 /// solid. Exact, and the same for every thread count. A solid leaves the universe when a corner of a moved black cube
-/// lies outside by more than 2^-20 voxels (no voxel centre is then lost). O(surface of source and target)
+/// lies outside by more than 2^-16 voxels (no voxel centre is then lost). O(surface of source and target)
 /// (WA87, sections 3 and 4).
 Octree move(const Octree& octree, const Motion& motion, Leaving leaving = Leaving::error, const Work& work = {});
 
