@@ -1,0 +1,282 @@
+// WA87: the paper's motion against the product's and against the definition, its bounds, and its Table 2.
+#include "papers/wa87.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <random>
+
+#include "blackleaf/error.h"
+#include "blackleaf/measures.h"
+#include "blackleaf/move.h"
+#include "reference/dense_grid.h"
+
+namespace blackleaf::papers::wa87 {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using reference::DenseGrid;
+
+double uniform(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+int pick(std::mt19937& random, int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
+
+Vector3d random_axis(std::mt19937& random) {
+  Vector3d axis;
+  do axis = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)};
+  while (axis.norm() < 0.1);
+  return axis;
+}
+
+/// Rotations about the origin, most of them such that centres fall on faces.
+Matrix3d random_rotation(std::mt19937& random) {
+  const auto shuffled = [&](Matrix3d r) {  // conjugated by a cyclic permutation of the axes
+    Matrix3d cycle;
+    cycle << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    for (int k = pick(random, 0, 2); k > 0; --k) r = cycle * r * cycle.transpose();
+    return pick(random, 0, 1) ? r : Matrix3d(r.transpose());
+  };
+  const auto about_z = [](double c, double s) {
+    Matrix3d r;
+    r << c, -s, 0, s, c, 0, 0, 0, 1;
+    return r;
+  };
+  Matrix3d r;
+  switch (pick(random, 0, 6)) {
+    case 0:
+      return Matrix3d::Identity();
+    case 1:
+      return shuffled(about_z(0, 1)) * shuffled(about_z(-1, 0));
+    case 2:
+      return shuffled(about_z(std::sqrt(0.5), std::sqrt(0.5)));
+    case 3:
+      return shuffled(about_z(0.6, 0.8));
+    case 4:
+      r << 1, -2, 2, 2, -1, -2, 2, 2, 1;
+      return shuffled(r / 3);
+    default:
+      return Motion::rotation(random_axis(random), uniform(random, -3.2, 3.2)).rotation();
+  }
+}
+
+/// Rotations about the universe's centre with translations up to `reach`: whole, half, thirds, or any.
+Motion random_motion(int depth, double reach, std::mt19937& random) {
+  const double half = std::exp2(depth - 1);
+  Vector3d by(uniform(random, -reach, reach), uniform(random, -reach, reach), uniform(random, -reach, reach));
+  const double grid = std::array{0.0, 1.0, 0.5, 1.0 / 3, 0.25}[static_cast<std::size_t>(pick(random, 0, 4))];
+  if (grid > 0) by = (by / grid).array().round() * grid;
+  return Motion(random_rotation(random), by).about(Vector3d::Constant(half));
+}
+
+/// A random solid in the middle of a universe twice as large on every axis, so that it may be turned.
+DenseGrid random_inner_solid(int depth, std::mt19937& random) {
+  DenseGrid grid(depth);
+  const DenseGrid inner = reference::random_solid(depth - 1, random);
+  const int corner = inner.side() / 2;
+  inner.for_each([&](int x, int y, int z, bool black) { grid.set(x + corner, y + corner, z + corner, black); });
+  return grid;
+}
+
+/// The definition: a voxel is black iff its centre, moved back, lies in the closed solid.
+DenseGrid moved_by_definition(const DenseGrid& source, const FixedMotion& motion) {
+  DenseGrid target(source.depth);
+  target.for_each([&](int x, int y, int z, bool) {
+    const std::array<std::int64_t, 3> c = {2 * x + 1, 2 * y + 1, 2 * z + 1};
+    std::array<std::int64_t, 3> low{}, high{};  // the voxels that touch the point
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& row = motion.inverse_rotation[i];
+      const std::int64_t p = row[0] * c[0] + row[1] * c[1] + row[2] * c[2] + 2 * motion.inverse_translation[i];
+      high[i] = p >> 39;
+      low[i] = high[i] - ((p & ((std::int64_t{1} << 39) - 1)) == 0 ? 1 : 0);
+    }
+    for (std::int64_t i = low[0]; i <= high[0]; ++i)
+      for (std::int64_t j = low[1]; j <= high[1]; ++j)
+        for (std::int64_t k = low[2]; k <= high[2]; ++k)
+          if (source.at(i, j, k)) target.set(x, y, z);
+  });
+  return target;
+}
+
+template <class Compute>
+std::optional<Octree> unless_it_leaves(const Compute& compute) {
+  try {
+    return compute();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::out_of_universe) << error.what();
+    return std::nullopt;
+  }
+}
+
+TEST(Wa87Tree, KeepsInternalNodesOnlyAndLosesNothing) {
+  std::mt19937 random(1987);
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE(i);
+    const Octree octree = reference::octree(reference::random_solid(1 + i % 5, random));
+    const Tree tree(octree);
+    const Measures m = measure(octree);
+    EXPECT_EQ(tree.octree(), octree);
+    EXPECT_EQ(tree.internal_nodes(), m.internal_nodes);
+    EXPECT_EQ(tree.black_leaves(), m.black_leaves);
+    EXPECT_EQ(tree.volume(), m.volume);
+  }
+}
+
+TEST(Wa87Move, EqualsTheProductAndTheDefinition) {
+  std::mt19937 random(11);
+  int inside = 0, left = 0;
+  for (int i = 0; i < 700; ++i) {
+    SCOPED_TRACE(i);
+    const int depth = 2 + i % 4;
+    const DenseGrid grid = i % 10 ? random_inner_solid(depth, random) : reference::random_solid(depth, random);
+    const Octree octree = reference::octree(grid);
+    const Motion motion = random_motion(depth, std::exp2(depth) * 0.1, random);
+    const FixedMotion fixed(motion);
+    const Tree source(octree);
+    std::size_t internal = 0, peak = 0;
+    const auto papers = unless_it_leaves([&] {
+      const Tree target = move(source, fixed);
+      internal = target.internal_nodes();
+      peak = target.peak_internal_nodes();
+      EXPECT_EQ(target.black_leaves(), measure(target.octree()).black_leaves) << "not condensed";
+      return target.octree();
+    });
+    const auto products = unless_it_leaves([&] { return blackleaf::move(octree, motion); });
+    ASSERT_EQ(papers.has_value(), products.has_value());
+    if (!papers) {
+      ++left;
+      continue;
+    }
+    ++inside;
+    EXPECT_EQ(*papers, reference::octree(moved_by_definition(grid, fixed))) << "the paper's";
+    EXPECT_EQ(*papers, *products) << "the product's";
+    EXPECT_EQ(internal, measure(*products).internal_nodes) << "not condensed";
+    EXPECT_GE(peak, internal);
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(left, 10);
+}
+
+TEST(Wa87Move, LargerSolidsEqualTheProduct) {
+  std::mt19937 random(12);
+  for (int i = 0; i < 12; ++i) {
+    SCOPED_TRACE(i);
+    const int depth = 7;
+    const Octree octree = blackleaf::ball(depth, {60 + 0.5 * i, 64, 70}, 20 + i);
+    const Motion motion = random_motion(depth, 10, random);
+    EXPECT_EQ(move(Tree(octree), FixedMotion(motion)).octree(), blackleaf::move(octree, motion));
+  }
+}
+
+TEST(Wa87Move, QuarterTurnsAreLossless) {
+  std::mt19937 random(13);
+  Matrix3d quarter;
+  quarter << 0, 0, -1, 0, 1, 0, 1, 0, 0;  // (0,1,0), -90 degrees
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    const int depth = 1 + i % 5;
+    const DenseGrid grid = reference::random_solid(depth, random);
+    const Tree source(reference::octree(grid));
+    const Motion turn(quarter, {std::exp2(depth), 0, 0});
+    const Tree target = move(source, FixedMotion(turn));
+    EXPECT_EQ(target.volume(), source.volume());
+    EXPECT_EQ(target.internal_nodes(), source.internal_nodes());
+    EXPECT_EQ(target.black_leaves(), source.black_leaves());
+    DenseGrid expected(depth);
+    grid.for_each([&](int x, int y, int z, bool black) { expected.set(grid.side() - 1 - z, y, x, black); });
+    EXPECT_EQ(target.octree(), reference::octree(expected));
+  }
+}
+
+TEST(Wa87Move, ComposedMotionsNeverAddUpErrors) {
+  std::mt19937 random(14);
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    const int depth = 5;
+    const Octree octree = reference::octree(random_inner_solid(depth, random));
+    const Tree source(octree);
+    const Motion step = Motion::rotation(random_axis(random), std::numbers::pi / 6).about(Vector3d::Constant(16));
+    MovingObject object(octree);
+    for (int k = 0; k < 12; ++k) {
+      object = object.moved(step);
+      EXPECT_EQ(move(source, FixedMotion(object.motion())).octree(), object.octree()) << "step " << k;
+    }
+    EXPECT_EQ(object.octree(), octree) << "a full turn";
+  }
+}
+
+TEST(Wa87Bounds, Table1AsPrinted) {
+  struct Printed {
+    int m;
+    double black, internal, all, last_black, last_internal, last_all;  // and one unit of each one's last digit
+  };
+  const Printed table[] = {{8, 0.092, 0.0228, 0.186, 1e-3, 1e-4, 1e-3},
+                           {10, 0.024, 0.0057, 0.047, 1e-3, 1e-4, 1e-3},
+                           {12, 0.0060, 0.0015, 0.012, 1e-4, 1e-4, 1e-3},
+                           {14, 0.0015, 0.00036, 0.0029, 1e-4, 1e-5, 1e-4}};
+  for (const Printed& row : table) {
+    SCOPED_TRACE(row.m);
+    const double volume = std::exp2(3 * row.m);
+    const int n = 5 * row.m;
+    const auto is_printed_as = [](double bound, double printed, double unit) {
+      EXPECT_LE(bound, printed + 0.5 * unit);  // rounded to nearest or up
+      EXPECT_GT(bound, printed - unit);
+    };
+    is_printed_as(black_leaf_bound(row.m) / volume, row.black, row.last_black);
+    is_printed_as(internal_node_bound(row.m, n) / volume, row.internal, row.last_internal);
+    is_printed_as(node_bound(row.m, n) / volume, row.all, row.last_all);
+  }
+}
+
+TEST(Wa87Bounds, CorollaryFollowsFromTheLemma) {
+  for (int m = 0; m <= 15; ++m)
+    for (int n = std::max(m, 1); n <= 20; ++n) {
+      const double exact = 8 * internal_node_bound(m, n) + 1;
+      EXPECT_GE(node_bound(m, n), exact) << m << ' ' << n;
+      EXPECT_LE(node_bound(m, n), exact * 1.05 + 1) << m << ' ' << n;  // 46.08 became 47
+    }
+}
+
+TEST(Wa87Bounds, TheoremsHoldForMovedCubes) {
+  std::mt19937 random(15);
+  int tested = 0;
+  double closest = 0;
+  for (int i = 0; i < 4000; ++i) {
+    SCOPED_TRACE(i);
+    const int m = i % 6;
+    const int n = std::min(8, m + 1 + pick(random, 0, 3));
+    const int places = 1 << (n - m);
+    const auto corner = [&] { return pick(random, 0, places - 1) << m; };
+    const std::array<std::int32_t, 3> low = {corner(), corner(), corner()};
+    const Octree cube = blackleaf::box(n, low, {low[0] + (1 << m), low[1] + (1 << m), low[2] + (1 << m)});
+    // Anywhere: the cube's own centre goes to a random point of the middle of the universe.
+    const Vector3d centre = Vector3d(low[0], low[1], low[2]).array() + std::exp2(m - 1);
+    const double reach = std::max(0.0, std::exp2(n - 1) - 0.5 * std::sqrt(3) * std::exp2(m));
+    Vector3d to = Vector3d::Constant(std::exp2(n - 1)) +
+                  reach * Vector3d(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    if (i % 3 == 0) to = to.array().round() + (i % 2) * 0.5;  // centres on faces, and cubes across the middle
+    if (i % 9 == 0) to = Vector3d::Constant(std::exp2(n - 1));
+    const Matrix3d rotation = random_rotation(random);
+    const auto target =
+        unless_it_leaves([&] { return blackleaf::move(cube, Motion(rotation, to - rotation * centre)); });
+    if (!target) continue;
+    ++tested;
+    const Measures measures = measure(*target);
+    const auto black = static_cast<double>(measures.black_leaves);
+    const auto internal = static_cast<double>(measures.internal_nodes);
+    EXPECT_LE(black, black_leaf_bound(m)) << "Theorem 1, m = " << m;
+    EXPECT_LE(internal, internal_node_bound(m, n)) << "Theorem 2, m = " << m << ", n = " << n;
+    EXPECT_LE(8 * internal + 1, node_bound(m, n)) << "corollary, m = " << m << ", n = " << n;
+    if (n > 1) closest = std::max(closest, internal / internal_node_bound(m, n));
+  }
+  EXPECT_GT(tested, 3000);
+  EXPECT_EQ(closest, 1.0) << "the bound of one voxel is reached: eight voxels about the universe's centre";
+}
+
+// Table 2's object (a), as far as it can be read: see docs/PERFORMANCE.md for what is known of the figure.
+
+}  // namespace
+}  // namespace blackleaf::papers::wa87
