@@ -1,0 +1,145 @@
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_sort.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "blackleaf/drawing.h"
+#include "feature_edges.h"
+#include "octree/corner_walk.h"
+#include "octree/produce.h"
+#include "strokes.h"
+#include "visibility.h"
+
+namespace blackleaf {
+namespace {
+
+using detail::Around;
+using detail::EdgeFamily;
+using detail::Piece;
+using Families = std::array<EdgeFamily, 3>;
+using Pieces = std::array<std::vector<Piece>, 3>;  // by line class
+
+constexpr int kTaskLevels = 4;  // tasks are corner cubes this far below the root: enough for any number of cores
+
+struct Task {
+  Cube cube;
+  Around around;
+  Pieces pieces;
+};
+
+// Cuts the corner walk (corner_walk.h) into tasks: corner cubes of `level`, or larger ones that need no cutting.
+void cut(const Around& around, const Cube& cube, int level, std::vector<Task>& tasks) {
+  const auto is_gray = [](const Node& node) { return node.is_gray(); };
+  const auto same = [&](const Node& node) { return node.colour() == around[0].colour(); };
+  const bool uniform = std::none_of(around.begin(), around.end(), is_gray);
+  if (uniform && std::all_of(around.begin(), around.end(), same)) return;
+  if (uniform || cube.level <= level) {
+    tasks.push_back({cube, around, {}});
+    return;
+  }
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    Around below;
+    for (unsigned i = 0; i < 8; ++i) below[i] = around[octant | i].child(static_cast<int>(~(octant ^ i) & 7));
+    cut(below, cube.child(static_cast<int>(octant)), level, tasks);
+  }
+}
+
+std::vector<Task> cut(const Octree& octree) {
+  const Node root = detail::brick_level_root(octree), white = Node::uniform(root.level(), Colour::white);
+  const std::int32_t side = std::int32_t{1} << root.level();
+  std::vector<Task> tasks;
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    Around around;
+    around.fill(white);
+    around[~octant & 7] = root;
+    const Cube cube{octant & 1 ? side : 0, octant & 2 ? side : 0, octant & 4 ? side : 0, root.level()};
+    cut(around, cube, std::max(2, root.level() - kTaskLevels), tasks);
+  }
+  return tasks;
+}
+
+// Finds the feature edges of one task and keeps what is visible of them.
+class Drawer {
+ public:
+  Drawer(const Octree& octree, const Families& families) : families_(families) {
+    for (const EdgeFamily& family : families) {
+      // End-on families draw nothing and are never asked; their place is held by another family's walk.
+      const bool drawn = family.mode != EdgeFamily::Mode::end_on;
+      walks_.emplace_back(octree, drawn ? family : families[(family.a + 1) % 3]);
+    }
+  }
+
+  void run(Task& task) {
+    pieces_ = &task.pieces;
+    detail::FeatureEdges<Drawer> edges(families_, *this);
+    detail::corner_walk(task.around, task.cube, edges);
+  }
+
+  void operator()(unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
+    const EdgeFamily& family = families_[axis];
+    for (const detail::Interval& visible : walks_[axis].visible(a0, a1, b, c))
+      (*pieces_)[family.line_class].push_back(family.piece(visible, b, c));
+  }
+
+ private:
+  const Families& families_;
+  std::vector<detail::VisibilityWalk> walks_;
+  Pieces* pieces_ = nullptr;
+};
+
+// The pieces of all tasks, each class sorted. Their order after sorting does not depend on how they were found.
+Pieces gather(std::vector<Task>& tasks, bool parallel) {
+  Pieces all;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    std::size_t count = 0;
+    for (const Task& task : tasks) count += task.pieces[k].size();
+    all[k].reserve(count);
+    for (Task& task : tasks) {
+      all[k].insert(all[k].end(), task.pieces[k].begin(), task.pieces[k].end());
+      std::vector<Piece>().swap(task.pieces[k]);
+    }
+    if (parallel)
+      oneapi::tbb::parallel_sort(all[k].begin(), all[k].end());
+    else
+      std::sort(all[k].begin(), all[k].end());
+  }
+  return all;
+}
+
+}  // namespace
+
+LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
+  const detail::Direction& d = view.direction();
+  const Families families = {EdgeFamily(0, d), EdgeFamily(1, d), EdgeFamily(2, d)};
+  std::vector<Task> tasks = cut(octree);
+  detail::Progress progress(work, tasks.size());
+  Pieces pieces;
+  const auto run = [&](Task& task) {
+    Drawer(octree, families).run(task);
+    progress.step();
+  };
+  const int threads = work.threads > 0 ? work.threads : oneapi::tbb::this_task_arena::max_concurrency();
+  if (threads == 1) {
+    for (Task& task : tasks) run(task);
+    pieces = gather(tasks, false);
+  } else {
+    oneapi::tbb::task_arena arena(threads);
+    arena.execute([&] {
+      oneapi::tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) { run(tasks[i]); });
+      pieces = gather(tasks, true);
+    });
+  }
+  LineDrawing drawing{view, {}};
+  std::array<bool, 3> done{};  // two families can share a line class
+  for (const EdgeFamily& family : families) {
+    if (family.mode == EdgeFamily::Mode::end_on || done[family.line_class]) continue;
+    done[family.line_class] = true;
+    detail::append_strokes(pieces[family.line_class], family, view, drawing.strokes);
+  }
+  return drawing;
+}
+
+}  // namespace blackleaf

@@ -1,0 +1,103 @@
+// Feature edges: where the solid's boundary is not flat.
+//
+// A lattice edge has four voxels around it, A = (b, c), B = (b-1, c), C = (b, c-1), D = (b-1, c-1) in the plane of the
+// other two axes. The boundary is flat there, or absent, iff A = B and C = D, or A = C and B = D; every other edge is a
+// feature edge. Those whose rays are blocked from their first step on are dropped at once: for a ray in general
+// position the voxel it enters is black, for one in a lattice plane both voxels beside it are.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "edge_family.h"
+#include "octree/brick.h"
+#include "octree/corner_walk.h"
+
+namespace blackleaf::detail {
+
+/// Voxels whose lower, upper coordinate bit along an axis is 0.
+struct AxisMasks {
+  std::uint64_t even = 0, lower_half = 0;
+};
+inline constexpr std::array<AxisMasks, 3> kAxisMasks = [] {
+  std::array<AxisMasks, 3> masks{};
+  for (unsigned axis = 0; axis < 3; ++axis)
+    for (unsigned bit = 0; bit < 64; ++bit) {
+      masks[axis].even |= std::uint64_t{!(bit >> axis & 1)} << bit;
+      masks[axis].lower_half |= std::uint64_t{!(bit >> (axis + 3) & 1)} << bit;
+    }
+  return masks;
+}();
+
+/// The brick moved up by one voxel along an axis: coordinate k gets the bit of k - 1, coordinate 0 that of coordinate 3
+/// of the next lower brick. In the index, +1 and +2 along the axis are the distances 2^axis and 8 * 2^axis.
+constexpr std::uint64_t moved_up(std::uint64_t brick, std::uint64_t lower, unsigned axis) {
+  const AxisMasks& m = kAxisMasks[axis];
+  const unsigned one = 1u << axis, two = 8u << axis;
+  return (brick & m.even) << one | (brick & ~m.even & m.lower_half) << (two - one) |
+         (lower & ~m.even & ~m.lower_half) >> (two + one);
+}
+
+/// Bits of the edges that may be visible, from the bits of the voxels around them (64 edges at a time).
+/// Requires: the family is not end_on.
+constexpr std::uint64_t candidates(const EdgeFamily& family, std::uint64_t A, std::uint64_t B, std::uint64_t C,
+                                   std::uint64_t D) {
+  const std::uint64_t feature = ((A ^ B) | (C ^ D)) & ((A ^ C) | (B ^ D));
+  if (family.mode == EdgeFamily::Mode::in_plane) return feature & ~(family.d_c > 0 ? A & B : C & D);
+  return feature & ~(family.d_b > 0 ? (family.d_c > 0 ? A : C) : (family.d_c > 0 ? B : D));
+}
+
+/// Visitor for corner_walk. Calls sink(family index, a0, a1, b, c) for runs [a0, a1] of candidate edges, each edge
+/// once.
+template <class Sink>
+class FeatureEdges {
+ public:
+  FeatureEdges(const std::array<EdgeFamily, 3>& families, Sink& sink) : families_(families), sink_(sink) {}
+
+  void uniform(const Cube& cube, const Around& around) {
+    const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};
+    const auto bits = [&](unsigned i) { return around[i].is_black() ? ~std::uint64_t{0} : 0; };
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const EdgeFamily& f = families_[axis];
+      if (f.mode == EdgeFamily::Mode::end_on) continue;
+      const unsigned b = 1u << f.b, c = 1u << f.c;
+      if (candidates(f, bits(7), bits(7 - b), bits(7 - c), bits(7 - b - c)))
+        sink_(axis, corner[f.a], corner[f.a] + cube.side(), corner[f.b], corner[f.c]);
+    }
+  }
+
+  void bricks(const Cube& cube, const Around& around) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const EdgeFamily& f = families_[axis];
+      if (f.mode == EdgeFamily::Mode::end_on) continue;
+      const unsigned b = 1u << f.b, c = 1u << f.c;
+      const std::uint64_t A = around[7].brick(), low_c = around[7 - c].brick();
+      const std::uint64_t B = moved_up(A, around[7 - b].brick(), f.b);
+      const std::uint64_t C = moved_up(A, low_c, f.c);
+      const std::uint64_t D = moved_up(B, moved_up(low_c, around[7 - b - c].brick(), f.b), f.c);
+      const std::uint64_t edges = candidates(f, A, B, C, D);
+      if (edges) runs(axis, cube, edges);
+    }
+  }
+
+ private:
+  void runs(unsigned axis, const Cube& cube, std::uint64_t edges) {
+    const EdgeFamily& f = families_[axis];
+    for (std::uint64_t starts = edges & ~moved_up(edges, 0, axis); starts; starts &= starts - 1) {
+      const auto first = static_cast<unsigned>(std::countr_zero(starts));
+      const std::array<unsigned, 3> at = {brick_x(first), brick_y(first), brick_z(first)};
+      const unsigned line = first & ~(9u << axis);  // the line's edge with coordinate 0
+      unsigned end = at[axis] + 1;
+      while (end < 4 && (edges >> (line | unsigned{kSpread[end]} << axis) & 1)) ++end;
+      const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};
+      const auto place = [&](unsigned i) { return corner[i] + static_cast<std::int32_t>(at[i]); };
+      sink_(axis, place(f.a), corner[f.a] + static_cast<std::int32_t>(end), place(f.b), place(f.c));
+    }
+  }
+
+  const std::array<EdgeFamily, 3>& families_;
+  Sink& sink_;
+};
+
+}  // namespace blackleaf::detail
