@@ -1,0 +1,93 @@
+// blackleaf collide: whether two solids interfere, by how much, how far apart they are.
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "blackleaf/contact.h"
+#include "blackleaf/error.h"
+#include "blackleaf/move.h"
+#include "commands.h"
+#include "files.h"
+#include "motion_options.h"
+
+namespace blackleaf::cli {
+namespace {
+
+struct Answer {
+  bool interferes = false;
+  std::optional<std::uint64_t> overlap;  // voxels; none in exact mode
+  std::optional<Distance> apart;         // none in exact mode, when they interfere or when one is empty
+};
+
+// B where it is after its motion, as far as the universe holds it.
+Octree moved(Session& session, const Octree& b, const Motion& motion, const std::string& name) {
+  return session.stage("move", [&](const Work& work) {
+    try {
+      return move(b, motion, Leaving::error, work);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::out_of_universe) throw;
+    }
+    Octree inside = move(b, motion, Leaving::clip, work);
+    session.warn(fmt::format("parts of the moved '{}' are outside the universe and are not looked at", name));
+    return inside;
+  });
+}
+
+Json as_json(const Answer& answer, bool exact) {
+  Json report = {{"interferes", answer.interferes},
+                 {"overlap_volume", nullptr},
+                 {"distance", nullptr},
+                 {"mode", exact ? "exact" : "voxelised"}};
+  if (answer.overlap) report["overlap_volume"] = *answer.overlap;
+  if (answer.interferes && !exact) report["distance"] = 0.0;
+  if (answer.apart) report["distance"] = answer.apart->voxels;
+  return report;
+}
+
+std::string as_text(const Answer& answer) {
+  if (answer.interferes)
+    return answer.overlap ? fmt::format("they interfere: {} voxels overlap\n", grouped(*answer.overlap))
+                          : "they interfere\n";
+  if (!answer.apart) return "they do not interfere\n";
+  const auto& [voxels, squared, a, b] = *answer.apart;
+  if (squared == 0) return fmt::format("they do not interfere, but touch at ({}, {}, {})\n", a[0], a[1], a[2]);
+  return fmt::format("they do not interfere: {:.10g} voxels apart, from ({}, {}, {}) to ({}, {}, {})\n", voxels, a[0],
+                     a[1], a[2], b[0], b[1], b[2]);
+}
+
+}  // namespace
+
+int run_collide(Session& session) {
+  std::string first_name, second_name;
+  bool exact = false;
+  MotionOptions motion_options;
+  add_octree_input(session.app(), "A", first_name);
+  add_octree_input(session.app(), "B", second_name, "octree file of the same depth");
+  motion_options.add_to(session.app(), "B");
+  session.app().add_flag("--exact", exact, "take the moved B as tilted cubes, not as voxels; no volume or distance");
+  session.add_json();
+  session.set_example("blackleaf collide room.octree robot.octree --rotate 0,0,1:45 --about centroid");
+  if (!session.parse()) return kDone;
+
+  const auto [a, b] = read_pair(session, first_name, second_name);
+  Answer answer;
+  if (exact) {
+    const Motion motion = motion_options.motion(b);
+    answer.interferes = session.stage(
+        "collide", [&, &first = a, &second = b](const Work&) { return interferes_exactly(first, second, motion); });
+  } else {
+    const Octree target = motion_options.given() ? moved(session, b, motion_options.motion(b), second_name) : b;
+    session.stage("collide", [&, &first = a](const Work&) {
+      answer.overlap = overlap_volume(first, target);
+      answer.interferes = *answer.overlap > 0;
+      if (!answer.interferes) answer.apart = distance(first, target);
+    });
+  }
+  if (session.json())
+    print_out(as_json(answer, exact));
+  else if (!session.quiet())
+    print_out(as_text(answer));
+  return answer.interferes ? kNo : kDone;
+}
+
+}  // namespace blackleaf::cli

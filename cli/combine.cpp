@@ -1,0 +1,40 @@
+// blackleaf combine: set operations on two octrees of one universe.
+#include <fmt/format.h>
+
+#include <map>
+
+#include "blackleaf/error.h"
+#include "blackleaf/set_operations.h"
+#include "commands.h"
+#include "files.h"
+
+namespace blackleaf::cli {
+
+int run_combine(Session& session) {
+  std::string first_name, second_name, operation, output;
+  add_octree_input(session.app(), "A", first_name);
+  session.app().add_option("OP", operation, "and, or, minus or xor")->required()->type_name("");
+  add_octree_input(session.app(), "B", second_name, "octree file of the same depth");
+  add_output(session.app(), output, "octree file to write, or - for standard output; it has the frame of A");
+  session.add_json();
+  session.set_example("blackleaf combine bunny.octree minus ball.octree -o hollow.octree");
+  if (!session.parse()) return kDone;
+
+  using Operation = Octree (*)(const Octree&, const Octree&, const Work&);
+  static const std::map<std::string, Operation> operations = {
+      {"and", intersect}, {"or", unite}, {"minus", subtract}, {"xor", symmetric_difference}};
+  const auto chosen = operations.find(operation);
+  if (chosen == operations.end())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("unknown operation '{}' between '{}' and '{}'", operation, first_name, second_name),
+                "use and, or, minus or xor");
+  check_octree_output(session, output);
+  const auto [a, b] = read_pair(session, first_name, second_name);
+  const Octree result = session.stage("combine", [&](const Work& work) { return chosen->second(a, b, work); });
+  const std::uint64_t bytes =
+      write_octree(session, result, output, first_name, {{"operation", operation}, {"with", base_name(second_name)}});
+  report_written(session, result, output, bytes);
+  return kDone;
+}
+
+}  // namespace blackleaf::cli

@@ -1,0 +1,21 @@
+// The subcommands. Each declares its options on the session, parses, does its work and returns an exit code; whatever
+// goes wrong is thrown.
+#pragma once
+
+#include "exit_codes.h"
+#include "session.h"
+
+namespace blackleaf::cli {
+
+int run_build(Session& session);
+int run_info(Session& session);
+int run_translate(Session& session);
+int run_move(Session& session);
+int run_combine(Session& session);
+int run_collide(Session& session);
+int run_draw(Session& session);
+int run_export(Session& session);
+int run_curve(Session& session);
+int run_verify(Session& session);
+
+}  // namespace blackleaf::cli

@@ -1,0 +1,18 @@
+// Exit codes: what the program answers to whoever started it, and the one place where exceptions become exit codes.
+#pragma once
+
+namespace blackleaf::cli {
+
+enum ExitCode : int {
+  kDone = 0,          // done
+  kNo = 1,            // the answer to the question is "no", or "they interfere"
+  kBadInput = 2,      // bad usage or bad input
+  kFault = 3,         // a fault of the program or of the machine
+  kInterrupted = 130  // Ctrl-C, as shells count: 128 + SIGINT
+};
+
+/// Prints the exception being handled as one line on standard error and returns its exit code.
+/// Requires: called from a catch clause.
+int report_current_exception();
+
+}  // namespace blackleaf::cli

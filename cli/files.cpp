@@ -1,0 +1,192 @@
+#include "files.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+
+#include "blackleaf/error.h"
+#include "blackleaf/measures.h"
+
+namespace fs = std::filesystem;
+
+namespace blackleaf::cli {
+namespace {
+
+constexpr std::ptrdiff_t kMagicBytes = 8;  // docs/FILE_FORMAT.md
+
+}  // namespace
+
+CLI::Option* add_octree_input(CLI::App& app, const std::string& name, std::string& target,
+                              const std::string& description) {
+  return app.add_option(name, target, description)->required()->type_name("");
+}
+
+CLI::Option* add_output(CLI::App& app, std::string& target, const std::string& description) {
+  return app.add_option("-o,--output", target, description)->required()->type_name("OUT");
+}
+
+std::string base_name(const std::string& path) {
+  return path == "-" ? "standard input" : fs::path(path).filename().string();
+}
+
+std::string suffix_of(const std::string& path) {
+  std::string name = fs::path(path).filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (name.ends_with(".nii.gz")) return ".nii.gz";
+  return fs::path(name).extension().string();
+}
+
+std::string grouped(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
+std::uint64_t size_of(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  return error ? 0 : size;
+}
+
+void check_input(const std::string& path, const std::string& what) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found || path.empty())
+    throw Error(ErrorCode::io, fmt::format("there is no file '{}'", path), "check the name");
+  if (status.type() == fs::file_type::none)
+    throw Error(ErrorCode::io, fmt::format("cannot look at '{}': {}", path, error.message()), "check the name");
+  if (status.type() == fs::file_type::directory)
+    throw Error(ErrorCode::io, fmt::format("'{}' is a folder, not {}", path, what), "name a file in it");
+  if (access(path.c_str(), R_OK) != 0)
+    throw Error(ErrorCode::io, fmt::format("'{}' may not be read", path), "change its permissions");
+}
+
+void check_output(const std::string& path) {
+  if (path.empty()) throw Error(ErrorCode::bad_argument, "the output's name is empty", "give one after -o");
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    throw Error(ErrorCode::io, fmt::format("cannot write '{}': it is a folder", path), "name a file in it");
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error))
+    throw Error(ErrorCode::io, fmt::format("cannot write '{}': there is no folder '{}'", path, folder.string()),
+                "make the folder first");
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw Error(ErrorCode::io,
+                fmt::format("cannot write '{}': folder '{}' may not be written to", path, folder.string()),
+                "change its permissions or name another output");
+}
+
+void check_octree_output(const Session& session, const std::string& path) {
+  if (path == "-") {
+    if (session.json())
+      throw Error(ErrorCode::bad_argument, "-o - and --json both want standard output", "write the octree to a file");
+    if (isatty(STDOUT_FILENO) == 1)
+      throw Error(ErrorCode::bad_argument, "an octree is not text for a terminal", "redirect standard output");
+    return;
+  }
+  constexpr std::array<const char*, 14> kOthers = {".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd",  ".stl",
+                                                   ".obj",  ".ply",  ".svg", ".png",    ".pdf", ".json", ".runs"};
+  const std::string suffix = suffix_of(path);
+  if (std::find(kOthers.begin(), kOthers.end(), suffix) != kOthers.end())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("'{}' would be an octree, but its suffix {} says otherwise", path, suffix),
+                "name it *.octree, then use blackleaf export or draw");
+  check_output(path);
+}
+
+std::vector<std::uint8_t> read_bytes(const std::string& path) {
+  const bool standard = path == "-";
+  if (!standard) check_input(path, "a file");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(standard ? nullptr : std::fopen(path.c_str(), "rb"),
+                                                               std::fclose);
+  std::FILE* const file = standard ? stdin : opened.get();
+  const std::string name = standard ? "standard input" : "'" + path + "'";
+  if (file == nullptr) throw Error(ErrorCode::io, fmt::format("cannot open {}", name), "check its permissions");
+  std::vector<std::uint8_t> bytes;
+  std::array<std::uint8_t, 1 << 16> part{};
+  while (const std::size_t count = std::fread(part.data(), 1, part.size(), file))
+    bytes.insert(bytes.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count));
+  if (std::ferror(file) != 0) throw Error(ErrorCode::io, fmt::format("cannot read {}", name), "check the disk");
+  return bytes;
+}
+
+bool is_octree_data(const std::vector<std::uint8_t>& bytes) {
+  // The magic is what every octree file begins with, so any octree shows it.
+  static const std::vector<std::uint8_t> sample = to_bytes(Octree());
+  return std::ssize(bytes) >= kMagicBytes && std::equal(sample.begin(), sample.begin() + kMagicBytes, bytes.begin());
+}
+
+OctreeFile read_octree(Session& session, const std::string& path) {
+  return session.stage("read", [&](const Work&) {
+    if (path == "-") return from_bytes(read_bytes(path), "standard input");
+    check_input(path, "an octree file");
+    return load(path);
+  });
+}
+
+std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const std::string& b) {
+  if (a == "-" && b == "-")
+    throw Error(ErrorCode::bad_argument, "both octrees are - for standard input", "name a file for one of them");
+  const Octree first = read_octree(session, a).octree;
+  const Octree second = read_octree(session, b).octree;
+  if (first.depth() != second.depth())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("'{}' has depth {} and '{}' has depth {}", a, first.depth(), b, second.depth()),
+                "build both in one universe, with build --like");
+  if (!first.frame().same_as(second.frame()))
+    session.warn(
+        fmt::format("'{}' and '{}' have different frames; they are compared voxel by voxel as if both had "
+                    "that of the first",
+                    a, b));
+  return {first, second};
+}
+
+std::uint64_t write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
+                           const Json& options) {
+  const Json metadata = {{"program", "blackleaf"},
+                         {"version", BLACKLEAF_VERSION},
+                         {"source", base_name(source)},
+                         {"command", session.command()},
+                         {"options", options}};
+  const std::string text = metadata.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return session.stage("write", [&](const Work&) -> std::uint64_t {
+    if (path == "-") {
+      const std::vector<std::uint8_t> bytes = to_bytes(octree, text);
+      print_out(std::string(bytes.begin(), bytes.end()));
+      return bytes.size();
+    }
+    save(octree, path, text);
+    return size_of(path);
+  });
+}
+
+void report_written(const Session& session, const Octree& octree, const std::string& path, std::uint64_t file_bytes,
+                    const Json& more) {
+  if (path == "-" || (session.quiet() && !session.json())) return;
+  const Measures measures = measure(octree);
+  if (session.json()) {
+    Json report = {{"output", path},
+                   {"depth", octree.depth()},
+                   {"volume", measures.volume},
+                   {"black_leaves", measures.black_leaves},
+                   {"internal_nodes", measures.internal_nodes},
+                   {"memory_bytes", octree.memory_bytes()},
+                   {"file_bytes", file_bytes}};
+    report.update(more);
+    print_out(report);
+    return;
+  }
+  print_out(fmt::format("{}: depth {}, {} voxels, {} black leaves, {} internal nodes, {} bytes\n", path, octree.depth(),
+                        grouped(measures.volume), grouped(measures.black_leaves), grouped(measures.internal_nodes),
+                        grouped(file_bytes)));
+}
+
+}  // namespace blackleaf::cli

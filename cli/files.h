@@ -1,0 +1,59 @@
+// Files: octrees in and out by name, "-" for standard input and output, and checks made before any long work.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blackleaf/octree.h"
+#include "blackleaf/octree_file.h"
+#include "session.h"
+
+namespace blackleaf::cli {
+
+/// Declares the positional argument for an octree file.
+CLI::Option* add_octree_input(CLI::App& app, const std::string& name, std::string& target,
+                              const std::string& description = "octree file, or - for standard input");
+/// Declares the required -o.
+CLI::Option* add_output(CLI::App& app, std::string& target, const std::string& description);
+
+/// Throws Error(io) unless `path` names a file that is there. `what` says what it should be, e.g. "a mesh or volume".
+void check_input(const std::string& path, const std::string& what);
+/// Throws Error(io) when `path` plainly cannot be written: its folder is missing or closed to us, or it is a
+/// folder.
+void check_output(const std::string& path);
+/// The same for an octree; refuses suffixes of other formats, and "-" when standard output is a terminal or is to carry
+/// JSON.
+void check_octree_output(const Session& session, const std::string& path);
+
+/// Loads an octree, as stage "read".
+OctreeFile read_octree(Session& session, const std::string& path);
+/// Loads two octrees that are to be compared voxel by voxel. Throws Error(bad_argument) when their depths differ; warns
+/// when their frames do.
+std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const std::string& b);
+/// All bytes of a file, or of standard input for "-". Throws Error(io).
+std::vector<std::uint8_t> read_bytes(const std::string& path);
+/// True iff the bytes begin as those of an octree file do, whatever follows.
+bool is_octree_data(const std::vector<std::uint8_t>& bytes);
+
+/// Saves an octree, as stage "write", with metadata that say which program, command, source and options made it.
+/// `source` is the input as typed. Returns the bytes written.
+std::uint64_t write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
+                           const Json& options);
+
+/// Tells what was written: one line, or with --json an object that starts with the same facts and ends with `more`.
+/// Nothing under --quiet.
+void report_written(const Session& session, const Octree& octree, const std::string& path, std::uint64_t file_bytes,
+                    const Json& more = Json::object());
+
+/// The name without its folders; "-" becomes "standard input".
+std::string base_name(const std::string& path);
+/// The suffix in lower case, e.g. ".stl"; ".nii.gz" counts as one.
+std::string suffix_of(const std::string& path);
+/// Bytes in a file; 0 for what is no plain file.
+std::uint64_t size_of(const std::string& path);
+/// 1234567 as 1,234,567.
+std::string grouped(std::uint64_t number);
+
+}  // namespace blackleaf::cli

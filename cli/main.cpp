@@ -1,0 +1,88 @@
+// blackleaf: the command-line program. Finds the subcommand, runs it, and turns what it throws into an exit code.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "blackleaf/error.h"
+#include "commands.h"
+#include "interrupt.h"
+
+namespace blackleaf::cli {
+namespace {
+
+struct Command {
+  const char* name;
+  const char* description;
+  int (*run)(Session&);
+};
+
+// In the order in which one meets them.
+constexpr std::array<Command, 10> kCommands = {{
+    {"build", "make the octree of a mesh, a volume or a run stream", run_build},
+    {"info", "measure an octree: volume, surface, nodes, bounding box, ...", run_info},
+    {"translate", "shift an octree by whole voxels, without loss", run_translate},
+    {"move", "rotate and translate an octree", run_move},
+    {"combine", "unite, intersect or subtract two octrees", run_combine},
+    {"collide", "ask whether two octrees interfere, by how much, how far apart they are", run_collide},
+    {"draw", "draw an octree as lines, hidden ones removed", run_draw},
+    {"export", "write an octree as a volume, a mesh or a run stream", run_export},
+    {"curve", "convert between node numbers and voxels of the Millar curve", run_curve},
+    {"verify", "check every checksum and invariant of an octree file", run_verify},
+}};
+
+std::string help() {
+  std::string text =
+      "blackleaf: solid octrees of real objects that move\n"
+      "Usage: blackleaf COMMAND [OPTIONS] ...\n\nCommands:\n";
+  for (const Command& command : kCommands) text += fmt::format("  {:<12}{}\n", command.name, command.description);
+  text +=
+      "\nOptions:\n"
+      "  -h,--help   print this help, or that of a command after its name, and exit\n"
+      "  --version   print the version and exit\n"
+      "\nExit status: 0 done; 1 the answer is no, or they interfere; 2 bad usage or input; 3 internal fault\n"
+      "\nExample:\n"
+      "  blackleaf build bunny.stl -o bunny.octree && blackleaf draw bunny.octree --view 3,-4,2 -o bunny.svg\n";
+  return text;
+}
+
+int run(const std::vector<std::string>& arguments) {
+  if (arguments.empty()) {
+    fmt::print(stderr, "{}", help());
+    return kBadInput;
+  }
+  const std::string& name = arguments.front();
+  if (name == "--help" || name == "-h") {
+    print_out(help());
+    return kDone;
+  }
+  if (name == "--version") {
+    print_out(std::string("blackleaf " BLACKLEAF_VERSION "\n"));
+    return kDone;
+  }
+  for (const Command& command : kCommands) {
+    if (name != command.name) continue;
+    Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()});
+    const int code = command.run(session);
+    session.print_timings();
+    return code;
+  }
+  throw Error(ErrorCode::bad_argument,
+              name.starts_with('-') ? fmt::format("unknown option {} before a command", name)
+                                    : fmt::format("unknown command '{}'", name),
+              "see blackleaf --help");
+}
+
+}  // namespace
+}  // namespace blackleaf::cli
+
+int main(int argc, char** argv) {
+  try {
+    blackleaf::cli::watch_for_interrupt();
+    return blackleaf::cli::run({argv + (argc > 0 ? 1 : 0), argv + argc});
+  } catch (...) {
+    return blackleaf::cli::report_current_exception();
+  }
+}

@@ -1,0 +1,128 @@
+#include "motion_options.h"
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "blackleaf/error.h"
+#include "blackleaf/measures.h"
+#include "files.h"
+#include "options.h"
+
+namespace blackleaf::cli {
+namespace {
+
+constexpr double kRigid = 1e-6;  // the tolerance of Motion's constructor
+
+Eigen::Vector3d centre_of_rotation(const std::string& about, const Octree& octree) {
+  if (about == "corner") return Eigen::Vector3d::Zero();
+  if (about == "centre" || about == "center") return Eigen::Vector3d::Constant(octree.side() / 2.0);
+  if (about == "centroid") {
+    const auto point = centroid(octree);
+    if (!point)
+      throw Error(ErrorCode::bad_argument, "--about centroid: an empty solid has no centroid",
+                  "use corner, centre or x,y,z");
+    return *point;
+  }
+  if (about.find(',') == std::string::npos)
+    throw Error(ErrorCode::bad_argument, fmt::format("--about is '{}', which is no place", about),
+                "use corner, centre, centroid or x,y,z");
+  return parse_vector("--about", about);
+}
+
+}  // namespace
+
+void MotionOptions::add_to(CLI::App& app, const std::string& of) {
+  CLI::Option* rotate =
+      app.add_option("--rotate", rotations_, "turn " + of + " about an axis, right-handed; repeatable, in order")
+          ->type_name("x,y,z:degrees")
+          ->allow_extra_args(false);
+  CLI::Option* translate = add_text(app, "--translate", translation_, "x,y,z", "then shift " + of + ", in voxels");
+  add_text(app, "--about", about_, "WHERE",
+           "point that rotations leave in place: corner (default), centre, centroid or x,y,z");
+  add_text(app, "--matrix", matrix_, "FILE", "4x4 rigid matrix, sixteen numbers row by row, in voxels")
+      ->excludes(rotate)
+      ->excludes(translate);
+}
+
+Motion MotionOptions::motion(const Octree& octree) const {
+  Motion motion;
+  if (matrix_) {
+    motion = read_matrix(*matrix_);
+  } else {
+    for (const std::string& next : rotations_) motion = parse_rotation("--rotate", next) * motion;
+    if (translation_) motion = Motion::translation(parse_vector("--translate", *translation_)) * motion;
+  }
+  return about_ ? motion.about(centre_of_rotation(*about_, octree)) : motion;
+}
+
+Json MotionOptions::as_json(const Motion& motion) const {
+  Json options = Json::object();
+  if (!rotations_.empty()) options["rotate"] = rotations_;
+  if (translation_) options["translate"] = *translation_;
+  if (about_) options["about"] = *about_;
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < 3; ++i)
+    rows.push_back(
+        {motion.rotation()(i, 0), motion.rotation()(i, 1), motion.rotation()(i, 2), motion.translation()[i]});
+  rows.push_back({0, 0, 0, 1});
+  options["matrix"] = rows;
+  return options;
+}
+
+Motion read_matrix(const std::string& path) {
+  check_input(path, "a matrix file");
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  // A matrix is a few hundred bytes; whatever is longer is something else and need not be read.
+  constexpr std::size_t kLongest = 1 << 16;
+  for (char c; text.size() < kLongest && file.get(c);) text.push_back(c);
+  const std::string form = "write sixteen numbers row by row, the last row 0 0 0 1";
+
+  std::vector<double> numbers;
+  const std::string separators = " \t\r\n,;[]";
+  for (std::size_t at = text.find_first_not_of(separators); at != std::string::npos && numbers.size() <= 16;) {
+    const std::size_t end = text.find_first_of(separators, at);
+    numbers.push_back(parse_number(fmt::format("entry {} of matrix '{}'", numbers.size() + 1, path),
+                                   text.substr(at, end == std::string::npos ? end : end - at)));
+    at = text.find_first_not_of(separators, end);
+  }
+  if (numbers.size() != 16)
+    throw Error(ErrorCode::bad_input,
+                fmt::format("matrix '{}' has {} numbers instead of 16", path,
+                            numbers.size() > 16 ? "more than 16" : std::to_string(numbers.size())),
+                form);
+  if (numbers[12] != 0 || numbers[13] != 0 || numbers[14] != 0 || numbers[15] != 1)
+    throw Error(ErrorCode::bad_input, fmt::format("the last row of matrix '{}' is not 0 0 0 1", path), form);
+
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j)
+      rotation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = numbers[4 * i + j];
+    translation[static_cast<Eigen::Index>(i)] = numbers[4 * i + 3];
+  }
+  const std::string rigid = "give a rotation and a translation only";
+  const Eigen::Vector3d lengths = rotation.colwise().norm();
+  if ((lengths.array() - 1).abs().maxCoeff() > kRigid / 2)
+    throw Error(ErrorCode::bad_input,
+                fmt::format("matrix '{}' scales: its columns have lengths {:.6g}, {:.6g}, {:.6g}", path, lengths[0],
+                            lengths[1], lengths[2]),
+                rigid);
+  if ((rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRigid)
+    throw Error(ErrorCode::bad_input, fmt::format("matrix '{}' shears: its columns are not perpendicular", path),
+                rigid);
+  if (rotation.determinant() < 0)
+    throw Error(ErrorCode::bad_input, fmt::format("matrix '{}' mirrors: its determinant is negative", path), rigid);
+  return Motion(rotation, translation);
+}
+
+void LeavingOptions::add_to(CLI::App& app) {
+  CLI::Option* clip_flag = app.add_flag("--clip", clip_, "drop what leaves the universe");
+  app.add_flag("--grow", grow_, "double the universe until it holds everything")->excludes(clip_flag);
+}
+
+}  // namespace blackleaf::cli

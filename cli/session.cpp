@@ -1,0 +1,120 @@
+#include "session.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+#include <thread>
+
+#include "blackleaf/error.h"
+#include "interrupt.h"
+#include "options.h"
+#include "progress.h"
+
+namespace blackleaf::cli {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+// Most memory this process has held at once, in bytes.
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  return static_cast<std::uint64_t>(usage.ru_maxrss);  // bytes there, kilobytes elsewhere
+#else
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#endif
+}
+
+void check_interrupt() {
+  if (interrupted()) throw Error(ErrorCode::cancelled, "interrupted");
+}
+
+}  // namespace
+
+Session::Session(const std::string& command, const std::string& description, std::vector<std::string> arguments)
+    : command_(command), arguments_(std::move(arguments)), app_(description, "blackleaf " + command) {
+  app_.get_formatter()->column_width(34);
+  app_.set_help_flag("-h,--help", "print this help and exit");
+  // One group of its own, below the subcommand's options.
+  const std::string group = "Options of every command";
+  add_integer(app_, "--threads", threads_, 1, kMaxThreads, "threads to use (default: all of the machine)")
+      ->group(group);
+  app_.add_flag("--quiet", quiet_, "no summary, warnings or progress bar")->group(group);
+  app_.add_flag("--timings", timings_, "last line of standard error: JSON with seconds by stage, threads, peak memory")
+      ->group(group);
+}
+
+void Session::add_json() { app_.add_flag("--json", json_, "report as one JSON object"); }
+
+bool Session::parse() {
+  // CLI11 takes the arguments last first.
+  std::vector<std::string> reversed(arguments_.rbegin(), arguments_.rend());
+  std::string problem;
+  try {
+    app_.parse(std::move(reversed));
+    return true;
+  } catch (const CLI::CallForHelp&) {
+    print_out(app_.help());
+    return false;
+  } catch (const CLI::ExtrasError&) {
+    const std::vector<std::string> extras = app_.remaining();
+    const std::string first = extras.empty() ? "" : extras.front();
+    problem = first.starts_with('-') && first.size() > 1 ? fmt::format("unknown option {}", first)
+                                                         : fmt::format("unexpected argument '{}'", first);
+  } catch (const CLI::ParseError& error) {
+    problem = error.what();
+  }
+  throw Error(ErrorCode::bad_argument, fmt::format("{}, in blackleaf {}", problem, command_),
+              fmt::format("see blackleaf {} --help", command_));
+}
+
+void Session::warn(const std::string& message) const {
+  if (!quiet_) fmt::print(stderr, "blackleaf: warning: {}\n", message);
+}
+
+void Session::print_timings() const {
+  if (!timings_) return;
+  Json times;
+  for (const auto& [name, seconds] : seconds_) times[name] = seconds;
+  times["total"] = std::chrono::duration<double>(Clock::now() - start_).count();
+  times["threads"] = threads_ ? *threads_ : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  times["peak_memory"] = peak_memory();
+  fmt::print(stderr, "{}\n", times.dump());
+}
+
+Session::Stage::Stage(Session& session, std::string name)
+    : session_(session), name_(std::move(name)), bar_(std::make_shared<ProgressBar>(name_, !session.quiet_)) {
+  check_interrupt();
+  work_.threads = session.threads_.value_or(0);
+  work_.progress = [bar = bar_](double fraction) {
+    bar->show(fraction);
+    return !interrupted();
+  };
+}
+
+Session::Stage::~Stage() {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  auto& all = session_.seconds_;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.first == name_; });
+  if (found == all.end())
+    all.emplace_back(name_, seconds);
+  else
+    found->second += seconds;
+}
+
+void print_out(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  throw Error(ErrorCode::io, "cannot write to standard output: " + std::generic_category().message(errno),
+              "free some space or redirect it elsewhere");
+}
+
+void print_out(const Json& object) { print_out(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"); }
+
+}  // namespace blackleaf::cli

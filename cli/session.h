@@ -1,0 +1,85 @@
+// Session: one run of one subcommand: its command line, the options every subcommand has, its stages and what it tells.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blackleaf/work.h"
+
+namespace blackleaf::cli {
+
+using Json = nlohmann::ordered_json;
+
+class Session {
+ public:
+  /// `arguments` are those after the subcommand's name. `example` is a command line for the end of the help text.
+  Session(const std::string& command, const std::string& description, std::vector<std::string> arguments);
+
+  /// Where a subcommand declares its own options, before parse().
+  CLI::App& app() { return app_; }
+  /// Declares --json.
+  void add_json();
+  /// The last line of the help text.
+  void set_example(const std::string& command_line) { app_.footer("Example:\n  " + command_line); }
+
+  /// Reads the command line. False when only help was asked for (and has been printed). Throws Error(bad_argument).
+  [[nodiscard]] bool parse();
+
+  const std::string& command() const { return command_; }
+  bool json() const { return json_; }
+  bool quiet() const { return quiet_; }
+
+  /// Runs `work(options)` as a stage of the given name, e.g. "read": its seconds are added up under that name, it shows
+  /// progress and can be interrupted. Returns what the function returns.
+  template <class Function>
+  auto stage(const std::string& name, Function&& function) {
+    const Stage running(*this, name);
+    return std::forward<Function>(function)(running.work());
+  }
+
+  /// One line on standard error, not under --quiet.
+  void warn(const std::string& message) const;
+  /// Prints --timings, if asked for.
+  void print_timings() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  // Times a stage from construction to destruction.
+  class Stage {
+   public:
+    Stage(Session& session, std::string name);
+    ~Stage();
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+    const Work& work() const { return work_; }
+
+   private:
+    Session& session_;
+    std::string name_;
+    Clock::time_point start_ = Clock::now();
+    std::shared_ptr<class ProgressBar> bar_;
+    Work work_;
+  };
+
+  std::string command_;
+  std::vector<std::string> arguments_;
+  CLI::App app_;
+  std::optional<int> threads_;
+  bool json_ = false, quiet_ = false, timings_ = false;
+  Clock::time_point start_ = Clock::now();
+  std::vector<std::pair<std::string, double>> seconds_;  // by stage, in order of first use
+};
+
+/// Writes text or bytes to standard output and makes sure they arrive. Throws Error(io).
+void print_out(const std::string& text);
+/// The object on one line.
+void print_out(const Json& object);
+
+}  // namespace blackleaf::cli

@@ -1,0 +1,31 @@
+// blackleaf translate: AN84's shift by whole voxels.
+#include "blackleaf/move.h"
+#include "commands.h"
+#include "files.h"
+#include "motion_options.h"
+#include "options.h"
+
+namespace blackleaf::cli {
+
+int run_translate(Session& session) {
+  std::string input, by_text, output;
+  LeavingOptions leaving;
+  add_octree_input(session.app(), "FILE", input);
+  session.app().add_option("BY", by_text, "dx,dy,dz: whole voxels")->required()->type_name("");
+  add_output(session.app(), output, "octree file to write, or - for standard output");
+  leaving.add_to(session.app());
+  session.add_json();
+  session.set_example("blackleaf translate bunny.octree -10,0,4 -o shifted.octree");
+  if (!session.parse()) return kDone;
+
+  const auto by = parse_integer_vector("displacement", by_text);
+  check_octree_output(session, output);
+  const Octree source = read_octree(session, input).octree;
+  const Octree target =
+      session.stage("move", [&](const Work& work) { return translate(source, by, leaving.choice(), work); });
+  const std::uint64_t bytes = write_octree(session, target, output, input, {{"by", by}, {"leaving", leaving.name()}});
+  report_written(session, target, output, bytes);
+  return kDone;
+}
+
+}  // namespace blackleaf::cli
