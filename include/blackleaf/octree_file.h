@@ -7,20 +7,21 @@
 #include <vector>
 
 #include "blackleaf/octree.h"
-#include "blackleaf/work.h"
 
 namespace blackleaf {
 
 /// Writes an octree with its frame and metadata (a JSON object as text, e.g. where the object comes from; "{}" if there
 /// is nothing to say). The same octree, frame and metadata give the same bytes. Written to a temporary name beside
-/// `path`, flushed to disk and renamed: a crash leaves the old file or the new one. Throws Error(io).
+/// `path`, flushed to disk and renamed: a crash leaves the old file or the new one; a symbolic link is followed. Throws
+/// Error(io), and Error(bad_argument) for metadata that are not a JSON object or longer than 16 MiB, for a frame with
+/// numbers that are not finite, and for a unit that is not UTF-8 of at most 255 bytes without control characters.
 void save(const Octree& octree, const std::filesystem::path& path, const std::string& metadata = "{}");
 /// The same bytes in memory.
 std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& metadata = "{}");
 
 struct OctreeFile {
   Octree octree;
-  std::string metadata;        // JSON object
+  std::string metadata;  // JSON object
   std::uint64_t file_bytes = 0;
 };
 /// Reads and checks everything: magic, version, checksums, counts; trusts no length. Throws Error(io) when the file
@@ -28,10 +29,5 @@ struct OctreeFile {
 OctreeFile load(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.
 OctreeFile from_bytes(const std::vector<std::uint8_t>& bytes, const std::string& name = "octree data");
-
-/// Writes a file so that a crash or an error leaves the old file or the new one, never a part: a temporary name in the
-/// same folder, fsync, rename. Throws Error(io).
-void write_atomically(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
-void write_atomically(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace blackleaf

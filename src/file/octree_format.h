@@ -1,0 +1,60 @@
+// The layout of .octree files, version 1, as docs/FILE_FORMAT.md draws it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace blackleaf::detail::format {
+
+static_assert(std::endian::native == std::endian::little,
+              "files are little-endian; big-endian machines need swaps here");
+
+// Like PNG's: a byte above 127, a line end of each kind and the old end-of-file sign, so that a transfer that takes the
+// file for text shows in its first eight bytes.
+inline constexpr std::string_view kMagic{"\x89OCT\r\n\x1A\n", 8};
+inline constexpr std::uint32_t kVersion = 1;
+
+// Offsets of the fixed part.
+inline constexpr std::size_t kVersionAt = 8, kDepthAt = 12, kReservedAt = 13, kHeaderBytesAt = 16, kChunksAt = 20,
+                             kOriginAt = 24, kAxesAt = 48, kUnitBytesAt = 120, kMetadataBytesAt = 124;
+inline constexpr std::size_t kFixedBytes = 128, kEntryBytes = 40, kChecksumBytes = 8;
+
+inline constexpr std::size_t kMaxUnitBytes = 255;
+inline constexpr std::size_t kMaxMetadataBytes = std::size_t{1} << 24;
+
+// The largest zstd window a reader must provide, 2^23 bytes: bounds the memory that a hostile file can ask for.
+inline constexpr int kMaxWindowLog = 23;
+// A zstd block of 4 bytes can stand for 2^17 bytes and no more: a chunk that claims to grow by more is lying.
+inline constexpr std::uint64_t kMaxExpansion = std::uint64_t{1} << 15;
+// Run lengths stay below 2^60, nine groups of seven bits.
+inline constexpr std::size_t kMaxVarintBytes = 9;
+
+enum class ChunkKind : std::uint8_t { white = 0, black = 1, runs = 2 };
+
+struct ChunkEntry {
+  ChunkKind kind = ChunkKind::white;
+  std::uint64_t runs = 0;          // counts in the chunk, the leading zero included
+  std::uint64_t raw_bytes = 0;     // of the varints
+  std::uint64_t stored_bytes = 0;  // of the zstd frame
+  std::uint64_t checksum = 0;      // XXH3-64 of the frame
+};
+
+/// Chunks are the nodes of this level: at most 64 of them, and none smaller than 2^24 voxels unless it is the universe.
+constexpr int chunk_level(int depth) { return std::min(depth, std::max(8, depth - 2)); }
+constexpr std::size_t chunk_count(int depth) { return std::size_t{1} << (3 * (depth - chunk_level(depth))); }
+
+/// Where the chunk table begins: behind the unit and the metadata, at a multiple of eight.
+constexpr std::size_t table_at(std::size_t unit_bytes, std::size_t metadata_bytes) {
+  return (kFixedBytes + unit_bytes + metadata_bytes + 7) / 8 * 8;
+}
+
+/// A reason why this text cannot be a unit's name, or empty: it must be UTF-8 without control characters.
+std::string_view unit_problem(std::string_view unit);
+/// A reason why this text cannot be the metadata, or empty: it must be a JSON object.
+std::string_view metadata_problem(std::string_view metadata);
+
+}  // namespace blackleaf::detail::format

@@ -1,0 +1,163 @@
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "blackleaf/error.h"
+#include "blackleaf/octree_file.h"
+#include "blackleaf/runs.h"
+#include "file/atomic_write.h"
+#include "file/octree_format.h"
+
+namespace blackleaf {
+namespace {
+
+using namespace detail::format;
+using Bytes = std::vector<std::uint8_t>;
+
+// Measured on surfaces of real objects at depths 9 to 12; see docs/FILE_FORMAT.md.
+constexpr int kCompressionLevel = 6;
+
+struct FreeContext {
+  void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+};
+
+// Compresses chunk after chunk: one zstd frame each, with its content's size, on one thread, so that the bytes depend
+// on nothing but the chunk and the version of zstd.
+class Compressor {
+ public:
+  Compressor() : context_(ZSTD_createCCtx()) {
+    if (!context_) throw std::bad_alloc();
+    check(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, kCompressionLevel));
+    check(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_windowLog, kMaxWindowLog));
+    check(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_contentSizeFlag, 1));
+    check(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_checksumFlag, 0));
+  }
+
+  /// Appends the frame to `out` and returns its size.
+  std::size_t append(const Bytes& raw, Bytes& out) {
+    const std::size_t at = out.size();
+    out.resize(at + ZSTD_compressBound(raw.size()));
+    const std::size_t size = ZSTD_compress2(context_.get(), out.data() + at, out.size() - at, raw.data(), raw.size());
+    check(size);
+    out.resize(at + size);
+    return size;
+  }
+
+ private:
+  static void check(std::size_t code) {
+    if (ZSTD_isError(code)) throw std::runtime_error(fmt::format("zstd: {}", ZSTD_getErrorName(code)));
+  }
+
+  std::unique_ptr<ZSTD_CCtx, FreeContext> context_;
+};
+
+// Cuts the runs of a universe at the chunks' borders and encodes them.
+class ChunkWriter {
+ public:
+  explicit ChunkWriter(int depth) : chunk_voxels_(std::uint64_t{1} << (3 * chunk_level(depth))), left_(chunk_voxels_) {}
+
+  void add(std::uint64_t count, bool black) {
+    while (count > 0) {
+      const std::uint64_t part = std::min(count, left_);
+      if (part == chunk_voxels_) {
+        entries_.push_back({black ? ChunkKind::black : ChunkKind::white, 0, 0, 0, 0});
+      } else {
+        if (left_ == chunk_voxels_ && !black) put(0);
+        put(part);
+        left_ -= part;
+        if (left_ == 0) finish_chunk();
+      }
+      count -= part;
+    }
+  }
+
+  const std::vector<ChunkEntry>& entries() const { return entries_; }
+  const Bytes& stored() const { return stored_; }
+
+ private:
+  void put(std::uint64_t count) {
+    for (++runs_; count >= 0x80; count >>= 7) raw_.push_back(static_cast<std::uint8_t>(count | 0x80));
+    raw_.push_back(static_cast<std::uint8_t>(count));
+  }
+
+  void finish_chunk() {
+    const std::size_t at = stored_.size();
+    const std::size_t size = compressor_.append(raw_, stored_);
+    entries_.push_back({ChunkKind::runs, runs_, raw_.size(), size, XXH3_64bits(stored_.data() + at, size)});
+    raw_.clear();
+    runs_ = 0;
+    left_ = chunk_voxels_;
+  }
+
+  const std::uint64_t chunk_voxels_;
+  std::uint64_t left_;      // voxels of the current chunk not yet told
+  std::uint64_t runs_ = 0;  // counts in raw_
+  Bytes raw_;               // varints of the current chunk
+  Bytes stored_;            // all finished chunks
+  std::vector<ChunkEntry> entries_;
+  Compressor compressor_;
+};
+
+template <class T>
+void put_at(Bytes& bytes, std::size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+void check_arguments(const Frame& frame, const std::string& metadata) {
+  if (!frame.origin.allFinite() || !frame.axes.allFinite())
+    throw Error(ErrorCode::bad_argument, "the octree's frame has numbers that are not finite");
+  if (const auto problem = unit_problem(frame.unit); !problem.empty())
+    throw Error(ErrorCode::bad_argument, std::string(problem));
+  if (const auto problem = metadata_problem(metadata); !problem.empty())
+    throw Error(ErrorCode::bad_argument, std::string(problem));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& metadata) {
+  const Frame& frame = octree.frame();
+  check_arguments(frame, metadata);
+
+  ChunkWriter chunks(octree.depth());
+  for_each_run(octree, [&](std::uint64_t count, bool black) { chunks.add(count, black); });
+
+  const std::size_t table = table_at(frame.unit.size(), metadata.size());
+  const std::size_t checksum_at = table + chunks.entries().size() * kEntryBytes;
+  const std::size_t header_bytes = checksum_at + kChecksumBytes;
+  Bytes bytes(header_bytes, 0);
+  std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
+  put_at(bytes, kVersionAt, kVersion);
+  put_at(bytes, kDepthAt, static_cast<std::uint8_t>(octree.depth()));
+  put_at(bytes, kHeaderBytesAt, static_cast<std::uint32_t>(header_bytes));
+  put_at(bytes, kChunksAt, static_cast<std::uint32_t>(chunks.entries().size()));
+  for (int i = 0; i < 3; ++i) put_at(bytes, kOriginAt + 8 * static_cast<std::size_t>(i), frame.origin[i]);
+  for (int i = 0; i < 9; ++i) put_at(bytes, kAxesAt + 8 * static_cast<std::size_t>(i), frame.axes(i % 3, i / 3));
+  put_at(bytes, kUnitBytesAt, static_cast<std::uint32_t>(frame.unit.size()));
+  put_at(bytes, kMetadataBytesAt, static_cast<std::uint32_t>(metadata.size()));
+  std::memcpy(bytes.data() + kFixedBytes, frame.unit.data(), frame.unit.size());
+  std::memcpy(bytes.data() + kFixedBytes + frame.unit.size(), metadata.data(), metadata.size());
+  std::size_t at = table;
+  for (const ChunkEntry& entry : chunks.entries()) {
+    put_at(bytes, at, static_cast<std::uint8_t>(entry.kind));
+    put_at(bytes, at + 8, entry.runs);
+    put_at(bytes, at + 16, entry.raw_bytes);
+    put_at(bytes, at + 24, entry.stored_bytes);
+    put_at(bytes, at + 32, entry.checksum);
+    at += kEntryBytes;
+  }
+  put_at(bytes, checksum_at, std::uint64_t{XXH3_64bits(bytes.data(), checksum_at)});
+  bytes.insert(bytes.end(), chunks.stored().begin(), chunks.stored().end());
+  return bytes;
+}
+
+void save(const Octree& octree, const std::filesystem::path& path, const std::string& metadata) {
+  detail::write_atomically(path, to_bytes(octree, metadata));
+}
+
+}  // namespace blackleaf
