@@ -1,0 +1,100 @@
+#include "grid_mesh.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "blackleaf/error.h"
+
+namespace blackleaf::detail {
+namespace {
+
+// How far outside the universe a vertex may lie and still be put on its wall: what rounding can do to a mesh that was
+// placed to fill its universe.
+constexpr double kWallTolerance = 0x1p-16;  // voxels
+
+std::string text(const Eigen::Vector3d& p) {
+  std::array<char, 96> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "(%.6g, %.6g, %.6g)", p.x(), p.y(), p.z());
+  return buffer.data();
+}
+
+// The map from world to universe coordinates. Axes along the world's are divided by, not multiplied with a rounded
+// inverse.
+class ToUniverse {
+ public:
+  explicit ToUniverse(const Frame& frame) : origin_(frame.origin), scale_(frame.axes.diagonal()) {
+    const double size = frame.axes.colwise().norm().prod();
+    if (!frame.axes.allFinite() || !frame.origin.allFinite() || !(std::abs(frame.axes.determinant()) > 1e-9 * size))
+      throw Error(ErrorCode::bad_argument, "the frame's axes do not span space", "give three independent axes");
+    diagonal_ = frame.axes.isDiagonal(0);
+    if (!diagonal_) inverse_ = frame.axes.inverse();
+  }
+  Eigen::Vector3d operator()(const Eigen::Vector3d& world) const {
+    const Eigen::Vector3d p = world - origin_;
+    if (diagonal_) return p.cwiseQuotient(scale_);
+    return inverse_ * p;
+  }
+
+ private:
+  Eigen::Vector3d origin_, scale_;
+  Eigen::Matrix3d inverse_;
+  bool diagonal_;
+};
+
+}  // namespace
+
+GridMesh grid_mesh(const TriangleMesh& mesh, const MeshPlacement& placement) {
+  if (placement.depth < 1 || placement.depth > kMaxDepth)
+    throw Error(ErrorCode::bad_argument, "depth " + std::to_string(placement.depth) + " is out of range",
+                "use 1 to 20");
+  require_sound(mesh);
+  GridMesh grid;
+  grid.depth = placement.depth;
+  const double side = std::ldexp(1.0, grid.depth);
+  const ToUniverse to_universe(placement.frame);
+
+  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) used[corner] = 1;
+  grid.vertices.resize(mesh.vertices.size());
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (!used[i]) continue;
+    const Eigen::Vector3d p = to_universe(mesh.vertices[i]);
+    box.extend(p);
+    for (int axis = 0; axis < 3; ++axis)
+      grid.vertices[i][static_cast<std::size_t>(axis)] =
+          std::llround(std::ldexp(std::fmin(std::fmax(p[axis], 0.0), side), grid.fraction_bits()));
+  }
+  if (!(box.min().minCoeff() >= -kWallTolerance) || !(box.max().maxCoeff() <= side + kWallTolerance))
+    throw Error(ErrorCode::out_of_universe,
+                "the mesh reaches from " + text(box.min()) + " to " + text(box.max()) +
+                    " voxels, but the universe only from 0 to " + std::to_string(std::int64_t{1} << grid.depth),
+                "place it inside, or use a universe that holds it");
+
+  std::vector<std::array<std::uint64_t, 3>> keys(grid.vertices.size());
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) keys[i][axis] = static_cast<std::uint64_t>(grid.vertices[i][axis]);
+  const std::vector<std::uint32_t> first = first_equal(keys);
+  grid.triangles.reserve(mesh.triangles.size());
+  for (const Triangle& triangle : mesh.triangles) {
+    const Triangle t = {first[triangle[0]], first[triangle[1]], first[triangle[2]]};
+    if (!collapsed(t)) grid.triangles.push_back(t);
+  }
+  const EdgeCounts edges = count_edges(grid.triangles, grid.vertices.size());
+  if (edges.open > 0)
+    throw Error(ErrorCode::bad_input,
+                "the mesh is not closed: it has " + std::to_string(edges.open) +
+                    (edges.open == 1 ? " open edge" : " open edges"),
+                "close its holes first");
+  if (edges.misoriented > 0)
+    throw Error(ErrorCode::bad_input,
+                "the mesh is oriented inconsistently: " + std::to_string(edges.misoriented) +
+                    (edges.misoriented == 1 ? " edge is" : " edges are") + " passed unequally often in both directions",
+                "turn its triangles so that all face outward");
+  return grid;
+}
+
+}  // namespace blackleaf::detail
