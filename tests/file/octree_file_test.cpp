@@ -1,0 +1,188 @@
+// Round trips, canonical bytes, golden files.
+#include "blackleaf/octree_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "blackleaf/implicit.h"
+#include "blackleaf/leaves.h"
+#include "blackleaf/runs.h"
+#include "file/octree_format.h"
+#include "reference/dense_grid.h"
+#include "temporary_folder.h"
+
+namespace blackleaf {
+namespace {
+
+using test::expect_error;
+using Runs = std::vector<blackleaf::Run>;  // inside a test, "Run" is a function of GoogleTest
+
+Frame odd_frame() {
+  Frame frame;
+  frame.origin << -123.456, 1e-300, -0.0;
+  frame.axes << 0.1, -0.2, 1.0 / 3, 7, 0.5, -1e17, 3.25, std::numeric_limits<double>::denorm_min(), 2;
+  frame.unit = "\xC2\xB5m";  // micrometres, beyond ASCII
+  return frame;
+}
+
+bool same_bits(const Frame& a, const Frame& b) {
+  return std::memcmp(a.origin.data(), b.origin.data(), 3 * sizeof(double)) == 0 &&
+         std::memcmp(a.axes.data(), b.axes.data(), 9 * sizeof(double)) == 0 && a.unit == b.unit;
+}
+
+void expect_round_trip(const Octree& octree, const std::string& metadata) {
+  const auto bytes = to_bytes(octree, metadata);
+  const OctreeFile file = from_bytes(bytes);
+  reference::expect_valid(file.octree);
+  EXPECT_TRUE(file.octree == octree);
+  EXPECT_TRUE(same_bits(file.octree.frame(), octree.frame()));
+  EXPECT_EQ(file.metadata, metadata);
+  EXPECT_EQ(file.file_bytes, bytes.size());
+}
+
+TEST(OctreeFile, RoundTripsOfRandomSolids) {
+  std::mt19937 random(20240501);
+  for (int depth = 1; depth <= 6; ++depth)
+    for (int i = 0; i < (depth < 6 ? 120 : 20); ++i) {
+      SCOPED_TRACE(testing::Message() << "depth " << depth << " case " << i);
+      expect_round_trip(reference::octree(reference::random_solid(depth, random)).with_frame(odd_frame()),
+                        "{\"a\": [1, 2]}");
+    }
+}
+
+TEST(OctreeFile, RoundTripsOfLargeUniverses) {
+  for (int depth = 7; depth <= 12; ++depth) {
+    SCOPED_TRACE(depth);
+    const double side = std::ldexp(1.0, depth);
+    expect_round_trip(ball(depth, {0.43 * side, 0.51 * side, 0.6 * side}, std::min(0.37 * side, 300.0)), "{}");
+    const int n = 1 << depth;
+    expect_round_trip(box(depth, {1, 0, 3}, {n - 1, n, n / 2 + 1}), "{}");
+    expect_round_trip(Octree(depth, Colour::black), "{}");
+    expect_round_trip(Octree(depth), "{}");
+  }
+  expect_round_trip(ball(20, {3e5, 5e5, 7e5}, 40.5), "{}");
+  expect_round_trip(box(20, {0, 0, 0}, {1 << 19, 1 << 20, 1 << 20}), "{}");
+  expect_round_trip(box(20, {(1 << 20) - 1, (1 << 20) - 1, (1 << 20) - 1}, {1 << 20, 1 << 20, 1 << 20}), "{}");
+  expect_round_trip(Octree(20, Colour::black), "{}");
+}
+
+// Chunks meet inside runs, at their borders and around chunks of one colour.
+TEST(OctreeFile, RunsAcrossChunkBorders) {
+  for (const int depth : {9, 10, 11}) {
+    const std::uint64_t chunk = std::uint64_t{1} << (3 * detail::format::chunk_level(depth));
+    const std::uint64_t all = std::uint64_t{1} << (3 * depth);
+    for (const std::uint64_t cut :
+         {std::uint64_t{1}, chunk - 1, chunk, chunk + 1, 2 * chunk, 3 * chunk + 5, all - chunk, all - 1})
+      for (const bool first_black : {false, true}) {
+        SCOPED_TRACE(testing::Message() << depth << " cut " << cut << " " << first_black);
+        const std::uint32_t first = first_black ? 1 : 0;
+        const Runs stream = {{cut, first}, {all - cut, 1 - first}};
+        const Octree octree = octree_from_runs(stream, depth);
+        expect_round_trip(octree, "{}");
+        EXPECT_EQ(runs(from_bytes(to_bytes(octree)).octree), stream);
+      }
+  }
+}
+
+// The same solid made from its voxels, from its runs and from its unmerged leaves: the same bytes.
+TEST(OctreeFile, BytesDependOnTheSolidAlone) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    const int depth = 1 + i % 5;
+    const Octree octree = reference::octree(reference::random_solid(depth, random));
+    Runs leaves;
+    for_each_leaf(octree, [&](const Leaf& leaf, bool black) {
+      leaves.push_back({std::uint64_t{1} << (3 * leaf.cube.level), black ? 5u : 0u});
+    });
+    const auto bytes = to_bytes(octree);
+    EXPECT_EQ(to_bytes(octree_from_runs(leaves, depth)), bytes);
+    EXPECT_EQ(to_bytes(octree_from_monochrome(monochrome(octree), depth)), bytes);
+    EXPECT_EQ(to_bytes(from_bytes(bytes).octree), bytes);
+  }
+  const Octree octree = ball(10, {500, 510, 520}, 200);
+  EXPECT_EQ(to_bytes(octree_from_runs(runs(octree), 10)), to_bytes(octree));
+}
+
+TEST(OctreeFile, ChunkBordersDependOnTheDepthAlone) {
+  using namespace detail::format;
+  for (int depth = 1; depth <= 8; ++depth) EXPECT_EQ(chunk_count(depth), 1u);
+  EXPECT_EQ(chunk_count(9), 8u);
+  for (int depth = 10; depth <= 20; ++depth) EXPECT_EQ(chunk_count(depth), 64u);
+  // One colour takes a table entry and no contents.
+  EXPECT_EQ(to_bytes(Octree(20)).size(), kFixedBytes + 8 + 64 * kEntryBytes + kChecksumBytes);
+}
+
+TEST(OctreeFile, SaveAndLoad) {
+  const test::TemporaryFolder folder;
+  const Octree octree = ball(8, {100, 128, 140}, 77.25).with_frame(odd_frame());
+  const std::string metadata = "{\"source\": \"a ball\", \"nested\": {\"unicode\": \"\xE6\xA8\xB9\"}}";
+  save(octree, folder / "ball.octree", metadata);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"ball.octree"});
+  EXPECT_EQ(test::read_bytes(folder / "ball.octree"), to_bytes(octree, metadata));
+  const OctreeFile file = load(folder / "ball.octree");
+  EXPECT_TRUE(file.octree == octree);
+  EXPECT_TRUE(same_bits(file.octree.frame(), octree.frame()));
+  EXPECT_EQ(file.metadata, metadata);
+  EXPECT_EQ(file.file_bytes, std::filesystem::file_size(folder / "ball.octree"));
+}
+
+TEST(OctreeFile, RefusesWhatCannotBeKept) {
+  for (const char* metadata :
+       {"", "[]", "1", "\"text\"", "{", "{}x", "{\"a\":}", "{\"a\": \"\xFF\"}", "\xEF\xBB\xBF{}"})
+    expect_error(ErrorCode::bad_argument, {"JSON object"}, [&] { to_bytes(Octree(3), metadata); });
+  EXPECT_EQ(from_bytes(to_bytes(Octree(3), " { } ")).metadata, " { } ");
+  expect_error(ErrorCode::bad_argument, {"16 MiB"},
+               [] { to_bytes(Octree(3), "{\"a\": \"" + std::string(std::size_t{1} << 24, 'x') + "\"}"); });
+  Frame frame;
+  frame.origin[1] = std::numeric_limits<double>::quiet_NaN();
+  expect_error(ErrorCode::bad_argument, {"not finite"}, [&] { to_bytes(Octree(3).with_frame(frame)); });
+  frame = {};
+  frame.axes(2, 1) = std::numeric_limits<double>::infinity();
+  expect_error(ErrorCode::bad_argument, {"not finite"}, [&] { to_bytes(Octree(3).with_frame(frame)); });
+  for (const std::string& unit :
+       {std::string("a\nb"), std::string("\0", 1), std::string("\xC3"), std::string("\xC0\x80"),
+        std::string("\xED\xA0\x80"), std::string("\xF4\x90\x80\x80"), std::string("\x80"), std::string(256, 'm')}) {
+    frame = {};
+    frame.unit = unit;
+    expect_error(ErrorCode::bad_argument, {"unit"}, [&] { to_bytes(Octree(3).with_frame(frame)); });
+  }
+  frame.unit = std::string(255, 'm');
+  EXPECT_EQ(from_bytes(to_bytes(Octree(3).with_frame(frame))).octree.frame().unit, frame.unit);
+  frame.unit = "\xF0\x9D\x95\x9E \xE2\x82\xAC";
+  EXPECT_EQ(from_bytes(to_bytes(Octree(3).with_frame(frame))).octree.frame().unit, frame.unit);
+}
+
+// tests/data/version1.octree was written when version 1 was made. Its contents, told here, must always be read from it.
+// Equal bytes are promised for one version of zstd: with another, the contents of the chunks may be packed otherwise.
+TEST(OctreeFile, GoldenFileOfVersion1) {
+  const std::filesystem::path golden = std::filesystem::path(BLACKLEAF_TEST_DATA) / "version1.octree";
+  Frame frame;
+  frame.origin << -90.5, 126, -72.25;
+  frame.axes << -0.5, 0, 0.25, 0, 0.75, 0, 0.125, 0, 1.5;
+  frame.unit = "mm";
+  const Octree part = ball(9, {200, 250, 300}, 150.5);
+  Runs stream = runs(part);
+  stream.back().count -= 5;  // make the last chunk one of two colours
+  stream.push_back({5, 1});
+  const Octree octree = octree_from_runs(stream, 9).with_frame(frame);
+  const std::string metadata = "{\"source\": \"the ball about (200, 250, 300) and the last five voxels\"}";
+
+  const OctreeFile file = load(golden);
+  EXPECT_TRUE(file.octree == octree);
+  EXPECT_TRUE(same_bits(file.octree.frame(), frame));
+  EXPECT_EQ(file.metadata, metadata);
+
+  const auto written = to_bytes(octree, metadata), kept = test::read_bytes(golden);
+  // The fixed part, the unit and the metadata are the same with every version of zstd.
+  const std::size_t table = detail::format::table_at(frame.unit.size(), metadata.size());
+  ASSERT_GE(kept.size(), table);
+  EXPECT_TRUE(std::equal(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(table), written.begin()));
+  EXPECT_EQ(written, kept) << "if zstd has changed, say so in docs/FILE_FORMAT.md and keep the golden file";
+}
+
+}  // namespace
+}  // namespace blackleaf
