@@ -59,7 +59,13 @@ struct MoveProducer {
   }
 
   Task root() const { return at({0, 0, 0, depth < 2 ? 2 : depth}); }
-  Colour classify(Task& task, const Cube&) const { return task.above_source ? Colour::gray : task.window.colour(); }
+  Colour classify(Task& task, const Cube& cube) const {
+    if (!task.above_source) return task.window.colour();
+    const CellRange range = cells(cube);  // at this level the whole source is in cell (0,0,0)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (range.low[i] > 0 || range.high[i] < 0) return Colour::white;
+    return Colour::gray;
+  }
   Task child(const Task& task, const Cube& cube, int) const {
     if (task.above_source) return at(cube);
     return {task.window.narrowed(cells(cube)), false};
