@@ -1,4 +1,4 @@
-// Writes bunny.stl and pillar.stl, as README.md describes them.
+// Writes bunny.stl and beam.stl, as README.md describes them.
 //
 //   npm install bunny@1.0.1 && node make_meshes.mjs node_modules/bunny
 import {writeFileSync} from 'node:fs';
@@ -31,5 +31,5 @@ function box(low, high) {
 const bunny = createRequire(import.meta.url)(resolve(process.argv[2]));
 writeStl('bunny.stl', 'Stanford bunny, 3674 triangles, from the npm package bunny 1.0.1, public domain',
          bunny.positions, bunny.cells);
-const pillar = box([5.25, 0, -0.75], [6.5, 9, 0.75]);
-writeStl('pillar.stl', 'square pillar beside the Stanford bunny, public domain', pillar.positions, pillar.cells);
+const beam = box([-6, 6.25, 4.25], [6, 7.25, 4.9]);
+writeStl('beam.stl', 'beam beside the Stanford bunny, public domain', beam.positions, beam.cells);
