@@ -1,0 +1,72 @@
+// curve/decode, curve/encode: node number to voxel and back on the curve of order 10, one number at a time.
+// query/N: one random voxel of the bunny's universe.
+#include "blackleaf/curve.h"
+
+#include <random>
+
+#include "contenders.h"
+#include "inputs.h"
+#include "papers/mhf92.h"
+
+namespace blackleaf::bench {
+namespace {
+
+constexpr int kOrder = 10;
+constexpr std::size_t kCount = 4096;
+
+std::vector<std::uint64_t> random_numbers(int order) {
+  std::mt19937_64 random(1992);
+  std::vector<std::uint64_t> numbers(kCount);
+  for (auto& number : numbers) number = random() >> (64 - 3 * order);
+  return numbers;
+}
+
+// Times work(item) for each item in turn.
+template <class Items, class Function>
+void each(benchmark::State& state, const Items& items, const Function& work) {
+  for (auto _ : state)
+    for (const auto& item : items) benchmark::DoNotOptimize(work(item));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(items.size()));
+}
+
+}  // namespace
+
+void add_curve() {
+  namespace mhf92 = papers::mhf92;
+  contender("curve/decode", "ours", [](benchmark::State& state) {
+    each(state, random_numbers(kOrder), [](std::uint64_t number) { return curve::voxel(kOrder, number); });
+  });
+  contender("curve/decode", "paper", [](benchmark::State& state) {
+    each(state, random_numbers(kOrder), [](std::uint64_t number) { return mhf92::node_no_to_xyz(kOrder, number); });
+  });
+  contender("curve/encode", "ours", [](benchmark::State& state) {
+    std::vector<curve::Voxel> voxels;
+    for (const std::uint64_t number : random_numbers(kOrder)) voxels.push_back(curve::voxel(kOrder, number));
+    each(state, voxels, [](const curve::Voxel& voxel) { return curve::number(kOrder, voxel); });
+  });
+  contender("curve/encode", "paper", [](benchmark::State& state) {
+    std::vector<mhf92::Coordinates> voxels;
+    for (const std::uint64_t number : random_numbers(kOrder)) voxels.push_back(mhf92::node_no_to_xyz(kOrder, number));
+    each(state, voxels, [](const mhf92::Coordinates& voxel) { return mhf92::xyz_to_node_no(kOrder, voxel); });
+  });
+  for (const int depth : {8, 9}) {
+    const auto random_voxels = [=] {
+      std::vector<curve::Voxel> voxels;
+      for (const std::uint64_t number : random_numbers(depth)) voxels.push_back(curve::voxel(depth, number));
+      return voxels;
+    };
+    const std::string key = "query/" + side_name(depth);
+    contender(key, "ours", [=](benchmark::State& state) {
+      const Octree& octree = bunny(depth);
+      each(state, random_voxels(), [&](const curve::Voxel& v) { return octree.contains(v.x, v.y, v.z); });
+    });
+    contender(key, "dense", [=](benchmark::State& state) {
+      const auto& volume = bunny_volume(depth);
+      each(state, random_voxels(), [&](const curve::Voxel& v) {
+        return volume[static_cast<std::size_t>((std::int64_t{v.z} << depth | v.y) << depth | v.x)];
+      });
+    });
+  }
+}
+
+}  // namespace blackleaf::bench

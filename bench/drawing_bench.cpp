@@ -1,0 +1,52 @@
+// draw/INPUT/tT: the exact line drawing seen from (12, -16, 15). ball32 is the ball of radius 32 about a lattice point.
+#include "blackleaf/drawing.h"
+#include "blackleaf/implicit.h"
+#include "contenders.h"
+#include "inputs.h"
+#include "papers/va88.h"
+
+namespace blackleaf::bench {
+namespace {
+
+const View& the_view() {
+  static const View view(Eigen::Vector3d(12, -16, 15));
+  return view;
+}
+
+Octree ball_of_radius(int radius) {
+  int depth = 1;
+  while ((1 << depth) < 2 * radius) ++depth;
+  return ball(depth, Eigen::Vector3d::Constant(1 << (depth - 1)), radius);
+}
+
+void ours(benchmark::State& state, const Octree& octree, int threads) {
+  for (auto _ : state) benchmark::DoNotOptimize(draw(octree, the_view(), {threads, {}}));
+}
+
+// VA88 compares every box with all boxes in front of it.
+void paper(benchmark::State& state, const Octree& octree) {
+  for (auto _ : state) benchmark::DoNotOptimize(papers::va88::draw(octree, Eigen::Vector3d(12, -16, 15)));
+}
+
+}  // namespace
+
+void add_drawing() {
+  for (const int threads : {1, 2}) {
+    const std::string suffix = "/t" + std::to_string(threads);
+    for (const int depth : {7, 8, 9})
+      contender("draw/" + side_name(depth) + suffix, "ours",
+                [=](benchmark::State& s) { ours(s, bunny(depth), threads); });
+    if (threads == 1) contender("draw/64/t1", "ours", [](benchmark::State& s) { ours(s, bunny(6), 1); });
+    if (threads == 1) contender("draw/64/t1", "paper", [](benchmark::State& s) { paper(s, bunny(6)); });
+    if (threads == 1) contender("draw/128/t1", "paper", [](benchmark::State& s) { paper(s, bunny(7)); });
+    for (const int radius : {8, 16, 32, 64})
+      contender("draw/ball" + std::to_string(radius) + suffix, "ours",
+                [=](benchmark::State& s) { ours(s, ball_of_radius(radius), threads); });
+    for (const int radius : {8, 16, 32})
+      if (threads == 1)
+        contender("draw/ball" + std::to_string(radius) + "/t1", "paper",
+                  [=](benchmark::State& s) { paper(s, ball_of_radius(radius)); });
+  }
+}
+
+}  // namespace blackleaf::bench

@@ -1,0 +1,78 @@
+#include "inputs.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <numbers>
+
+#include "blackleaf/error.h"
+#include "blackleaf/leaves.h"
+
+namespace blackleaf::bench {
+namespace {
+
+// Only what the bunny needs, so that the benchmarks do without the input and output modules and their libraries.
+TriangleMesh read_binary_stl(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 84> header{};
+  if (!file.read(header.data(), header.size())) throw Error(ErrorCode::io, path + ": cannot be read");
+  std::uint32_t count = 0;
+  std::memcpy(&count, &header[80], sizeof count);
+  TriangleMesh mesh;
+  std::array<char, 50> record{};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!file.read(record.data(), record.size())) throw Error(ErrorCode::bad_input, path + ": ends too early");
+    std::array<float, 9> corners{};
+    std::memcpy(corners.data(), &record[12], sizeof corners);
+    for (std::size_t k = 0; k < 9; k += 3) mesh.vertices.emplace_back(corners[k], corners[k + 1], corners[k + 2]);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
+}  // namespace
+
+std::string side_name(int depth) { return std::to_string(1 << depth); }
+
+const TriangleMesh& bunny_mesh() {
+  static const TriangleMesh mesh = read_binary_stl(BLACKLEAF_DATA "/bunny.stl");
+  return mesh;
+}
+
+MeshPlacement bunny_placement(int depth) { return place_by_fraction(bunny_mesh(), depth, kFraction); }
+
+const Octree& bunny(int depth) {
+  static std::map<int, Octree> made;
+  const auto found = made.find(depth);
+  if (found != made.end()) return found->second;
+  return made.emplace(depth, octree_from_mesh(bunny_mesh(), bunny_placement(depth))).first->second;
+}
+
+const std::vector<std::uint8_t>& bunny_volume(int depth) {
+  static std::map<int, std::vector<std::uint8_t>> made;
+  std::vector<std::uint8_t>& volume = made[depth];
+  if (volume.empty()) {
+    volume.assign(std::size_t{1} << (3 * depth), 0);
+    for_each_black_leaf(bunny(depth), [&](const Leaf& leaf) {
+      const auto& c = leaf.cube;
+      for (std::int64_t z = c.z; z < c.z + c.side(); ++z)
+        for (std::int64_t y = c.y; y < c.y + c.side(); ++y)
+          std::fill_n(&volume[static_cast<std::size_t>((z << depth | y) << depth | c.x)], c.side(), std::uint8_t{1});
+    });
+  }
+  return volume;
+}
+
+VolumeView<std::uint8_t> view(const std::vector<std::uint8_t>& volume, int depth) {
+  const std::int64_t side = std::int64_t{1} << depth;
+  return {volume.data(), {side, side, side}};
+}
+
+Motion bunny_motion(int depth) {
+  const Motion turn = Motion::rotation(Eigen::Vector3d(1, 1, 1), std::numbers::pi / 6);
+  return Motion(turn.rotation(), {5.3, -7.1, 2.9}).about(Eigen::Vector3d::Constant(1 << (depth - 1)));
+}
+
+}  // namespace blackleaf::bench

@@ -1,0 +1,25 @@
+#include <cstdio>
+#include <exception>
+
+#include "contenders.h"
+
+int main(int argc, char** argv) {
+  using namespace blackleaf::bench;
+  add_voxels();
+  add_mesh();
+  add_translate();
+  add_move();
+  add_interference();
+  add_drawing();
+  add_curve();
+  add_file();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  try {
+    benchmark::RunSpecifiedBenchmarks();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "blackleaf_bench: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}
