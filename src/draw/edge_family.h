@@ -30,6 +30,8 @@
 #include <cassert>
 #include <cstdint>
 #include <cstdlib>
+#include <tuple>
+#include <utility>
 
 namespace blackleaf::detail {
 
@@ -38,7 +40,9 @@ using Direction = std::array<std::int64_t, 3>;
 /// A visible piece of an edge on its picture line: [low, high], low < high.
 struct Piece {
   std::int64_t key, low, high;
-  friend auto operator<=>(const Piece&, const Piece&) = default;
+  friend bool operator<(const Piece& p, const Piece& q) {
+    return std::tie(p.key, p.low, p.high) < std::tie(q.key, q.low, q.high);
+  }
 };
 
 /// Positions [low, high] in the units of a family.

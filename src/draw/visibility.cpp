@@ -17,6 +17,8 @@ VisibilityWalk::VisibilityWalk(const Octree& octree, const EdgeFamily& family)
       time_c_(family.mode == EdgeFamily::Mode::general ? std::abs(family.d_b) : 1),
       near_((family.d_b < 0 ? 1u << family.b : 0) | (family.d_c < 0 ? 1u << family.c : 0)) {
   assert(family.mode != EdgeFamily::Mode::end_on);
+  for (unsigned i = 0; i < 8; ++i)
+    octants_[i] = near_ ^ ((i & 2 ? 1u << family.b : 0) | (i & 4 ? 1u << family.c : 0) | (i & 1 ? 1u << family.a : 0));
   for (int level = 0; level <= kMaxDepth; ++level)
     levels_[static_cast<std::size_t>(level)] = octree.words(level).data();
 }
@@ -47,13 +49,27 @@ inline Interval VisibilityWalk::hidden(std::int64_t along, std::int64_t length, 
   return {along - std::max(at_enter, at_leave), along + length - std::min(at_enter, at_leave)};
 }
 
+// What a gray child hides; the child of a node is a node or a brick, that of a brick a byte.
+template <VisibilityWalk::Kind kKind>
+bool VisibilityWalk::descend_child(int level, std::uint64_t word, unsigned octant, std::int64_t along,
+                                   std::int64_t near_b, std::int64_t near_c) {
+  if constexpr (kKind == Kind::brick) {
+    return descend<Kind::byte>(level, word >> (8 * octant) & 0xFF, along, near_b, near_c);
+  } else {
+    const std::uint64_t gray_before = word >> 8 & 0xFF & ((1u << octant) - 1);
+    const std::uint64_t index = (word >> 16) + static_cast<unsigned>(std::popcount(gray_before));
+    const std::uint64_t child = levels_[static_cast<std::size_t>(level)][index];
+    return level == 2 ? descend<Kind::brick>(level, child, along, near_b, near_c)
+                      : descend<Kind::node>(level, child, along, near_b, near_c);
+  }
+}
+
 // Takes out of visible_ what a gray node hides; true iff nothing is left. `along` is the node's low side along a in
 // units of 1/D, near_b and near_c the times at which the rays enter its slabs of b and c.
 template <VisibilityWalk::Kind kKind>
 bool VisibilityWalk::descend(int level, std::uint64_t word, std::int64_t along, std::int64_t near_b,
                              std::int64_t near_c) {
   const int below = level - 1;
-  const unsigned bit_a = 1u << family_.a, bit_b = 1u << family_.b, bit_c = 1u << family_.c;
   const std::int64_t length = family_.scale << below, time_b = time_b_ << below, time_c = time_c_ << below;
   const auto colour = [&](unsigned octant) {
     if constexpr (kKind == Kind::brick) {
@@ -70,26 +86,18 @@ bool VisibilityWalk::descend(int level, std::uint64_t word, std::int64_t along, 
     const std::int64_t enter = std::max({std::int64_t{0}, enter_b, enter_c});
     const std::int64_t leave = std::min(enter_b + time_b, enter_c + time_c);
     if (enter >= leave) continue;
-    const unsigned first = near_ ^ ((quadrant & 1 ? bit_b : 0) | (quadrant & 2 ? bit_c : 0));
     for (unsigned upper = 0; upper < 2; ++upper) {
-      const unsigned octant = upper ? first | bit_a : first;
+      const unsigned octant = octants_[2 * quadrant + upper];
       const Colour child = colour(octant);
       if (child == Colour::white) continue;
       const std::int64_t child_along = upper ? along + length : along;
       const Interval hides = hidden(child_along, length, enter, leave);
       if (!visible_.meets(hides.low, hides.high)) continue;
       bool nothing_left = false;
-      if (child == Colour::black) {
+      if (kKind == Kind::byte || child == Colour::black)
         nothing_left = visible_.subtract(hides.low, hides.high);
-      } else if constexpr (kKind == Kind::node) {
-        const std::uint64_t gray_before = word >> 8 & 0xFF & ((1u << octant) - 1);
-        const std::uint64_t index = (word >> 16) + static_cast<unsigned>(std::popcount(gray_before));
-        const std::uint64_t child_word = levels_[static_cast<std::size_t>(below)][index];
-        nothing_left = below == 2 ? descend<Kind::brick>(below, child_word, child_along, enter_b, enter_c)
-                                  : descend<Kind::node>(below, child_word, child_along, enter_b, enter_c);
-      } else if constexpr (kKind == Kind::brick) {
-        nothing_left = descend<Kind::byte>(below, word >> (8 * octant) & 0xFF, child_along, enter_b, enter_c);
-      }
+      else
+        nothing_left = descend_child<kKind>(below, word, octant, child_along, enter_b, enter_c);
       if (nothing_left) return true;
     }
   }

@@ -26,6 +26,9 @@ class VisibilityWalk {
 
   template <Kind kKind>
   bool descend(int level, std::uint64_t word, std::int64_t along, std::int64_t near_b, std::int64_t near_c);
+  template <Kind kKind>
+  bool descend_child(int level, std::uint64_t word, unsigned octant, std::int64_t along, std::int64_t near_b,
+                     std::int64_t near_c);
   bool descend_in_plane(const Node& below, const Node& above, std::int64_t at_b, std::int64_t along,
                         std::int64_t near_c);
   Interval hidden(std::int64_t along, std::int64_t length, std::int64_t enter, std::int64_t leave) const;
@@ -33,8 +36,9 @@ class VisibilityWalk {
   const EdgeFamily& family_;
   Node root_;
   std::array<const std::uint64_t*, kMaxDepth + 1> levels_{};
-  std::int64_t time_b_, time_c_;  // tau that a ray needs to cross one voxel along b, along c
-  unsigned near_;                 // octant label bits of the children that a ray meets first, along b and c
+  std::int64_t time_b_, time_c_;       // tau that a ray needs to cross one voxel along b, along c
+  unsigned near_;                      // octant label bits of the children that a ray meets first, along b and c
+  std::array<unsigned, 8> octants_{};  // children in the order of visiting: nearest first, along a upward
   VisibleSet visible_;
 };
 
