@@ -46,7 +46,7 @@ Json as_json(const Answer& answer, bool exact) {
 
 std::string as_text(const Answer& answer) {
   if (answer.interferes)
-    return answer.overlap ? fmt::format("they interfere: {} voxels overlap\n", grouped(*answer.overlap))
+    return answer.overlap ? fmt::format("they interfere: the overlap is {}\n", counted(*answer.overlap, "voxel"))
                           : "they interfere\n";
   if (!answer.apart) return "they do not interfere\n";
   const auto& [voxels, squared, a, b] = *answer.apart;

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 namespace blackleaf::cli {
 namespace {
 
-constexpr std::ptrdiff_t kMagicBytes = 8;  // docs/FILE_FORMAT.md
+// docs/FILE_FORMAT.md: the first four bytes say "octree", the next four show damage by transfers that take it for text.
+constexpr std::ptrdiff_t kMagicBytes = 4;
 
 }  // namespace
 
@@ -54,6 +55,10 @@ std::uint64_t size_of(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
   return error ? 0 : size;
+}
+
+std::string counted(std::uint64_t number, const std::string& noun) {
+  return grouped(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
 void check_input(const std::string& path, const std::string& what) {
@@ -184,9 +189,10 @@ void report_written(const Session& session, const Octree& octree, const std::str
     print_out(report);
     return;
   }
-  print_out(fmt::format("{}: depth {}, {} voxels, {} black leaves, {} internal nodes, {} bytes\n", path, octree.depth(),
-                        grouped(measures.volume), grouped(measures.black_leaves), grouped(measures.internal_nodes),
-                        grouped(file_bytes)));
+  print_out(
+      fmt::format("{}: depth {}, {}, {}, {}, {}\n", path, octree.depth(), counted(measures.volume, "voxel"),
+                  (measures.black_leaves == 1 ? "1 black leaf" : grouped(measures.black_leaves) + " black leaves"),
+                  counted(measures.internal_nodes, "internal node"), counted(file_bytes, "byte")));
 }
 
 }  // namespace blackleaf::cli

@@ -53,6 +53,8 @@ std::string base_name(const std::string& path);
 std::string suffix_of(const std::string& path);
 /// Bytes in a file; 0 for what is no plain file.
 std::uint64_t size_of(const std::string& path);
+/// "1 voxel", "2,176 voxels".
+std::string counted(std::uint64_t number, const std::string& noun);
 /// 1234567 as 1,234,567.
 std::string grouped(std::uint64_t number);
 

@@ -63,14 +63,17 @@ bool Session::parse() {
   } catch (const CLI::CallForHelp&) {
     print_out(app_.help());
     return false;
-  } catch (const CLI::ExtrasError&) {
-    const std::vector<std::string> extras = app_.remaining();
-    const std::string first = extras.empty() ? "" : extras.front();
-    problem = first.starts_with('-') && first.size() > 1 ? fmt::format("unknown option {}", first)
-                                                         : fmt::format("unexpected argument '{}'", first);
   } catch (const CLI::ParseError& error) {
     problem = error.what();
   }
+  // CLI11 complains of a missing argument before it does of an unknown option, which is more often the reason.
+  const std::vector<std::string> extras = app_.remaining();
+  const auto option = std::find_if(extras.begin(), extras.end(),
+                                   [](const std::string& extra) { return extra.size() > 1 && extra[0] == '-'; });
+  if (option != extras.end())
+    problem = fmt::format("unknown option {}", *option);
+  else if (!extras.empty())
+    problem = fmt::format("unexpected argument '{}'", extras.front());
   throw Error(ErrorCode::bad_argument, fmt::format("{}, in blackleaf {}", problem, command_),
               fmt::format("see blackleaf {} --help", command_));
 }

@@ -1,7 +1,7 @@
 // blackleaf verify: whether an octree file is whole.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <optional>
 
 #include "blackleaf/error.h"
 #include "blackleaf/measures.h"
@@ -12,12 +12,13 @@
 namespace blackleaf::cli {
 namespace {
 
-// What is wrong with a file that says it is an octree; empty if nothing is.
+// What is wrong with a file; empty if nothing is. Throws for one that is no octree file at all: the question does not
+// apply to it.
 std::string problem_of(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<Octree>& octree) {
   try {
     octree = from_bytes(bytes, name).octree;
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::bad_input) throw;
+    if (error.code() != ErrorCode::bad_input || !is_octree_data(bytes)) throw;
     return error.what();
   }
   const std::string broken = validate(*octree);
@@ -35,8 +36,6 @@ int run_verify(Session& session) {
 
   const std::string name = input == "-" ? "standard input" : input;
   const std::vector<std::uint8_t> bytes = session.stage("read", [&](const Work&) { return read_bytes(input); });
-  if (!is_octree_data(bytes))
-    throw Error(ErrorCode::bad_input, fmt::format("'{}' is not an octree file", name), "make one with blackleaf build");
   std::optional<Octree> octree;
   const std::string problem = session.stage("verify", [&](const Work&) { return problem_of(bytes, name, octree); });
 
@@ -45,7 +44,7 @@ int run_verify(Session& session) {
   else if (!session.quiet())
     print_out(problem.empty() ? fmt::format("{}: ok, depth {}, {} voxels, {} bytes\n", name, octree->depth(),
                                             grouped(volume(*octree)), grouped(bytes.size()))
-                              : fmt::format("{}: damaged: {}\n", name, problem));
+                              : fmt::format("damaged: {}\n", problem));
   return problem.empty() ? kDone : kNo;
 }
 

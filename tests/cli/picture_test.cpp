@@ -1,0 +1,112 @@
+// blackleaf draw and export.
+#include <cmath>
+
+#include "cli/run_command.h"
+
+namespace blackleaf::test {
+namespace {
+
+using nlohmann::json;
+
+class Pictures : public CliTest {
+ protected:
+  Pictures() { make_box("b.octree", 4, {4, 4, 4}, {10, 10, 10}); }
+};
+
+TEST_F(Pictures, JsonHasTheNineEdgesThatACubeShows) {
+  done({"draw", "b.octree", "--view", "3,-4,2", "-o", "b.json"});
+  const json drawing = json::parse(read("b.json"));
+  EXPECT_EQ(drawing["strokes"].size(), 9u);
+  EXPECT_EQ(drawing["view"], json::parse("[3,-4,2]"));
+  const json report = done({"draw", "b.octree", "--view", "3,-4,2", "-o", "b.json", "--json"}).json();
+  EXPECT_EQ(report["strokes"], 9);
+  // Three visible edges along each axis; an edge along unit a is seen with length sqrt(1 - (a.d)^2).
+  const double expected = 3 * 6 * (std::sqrt(20.0 / 29) + std::sqrt(13.0 / 29) + std::sqrt(25.0 / 29));
+  EXPECT_NEAR(report["length"].get<double>(), expected, 1e-9);
+}
+
+TEST_F(Pictures, StandardOutputTakesSvgAndJson) {
+  const Result svg = done({"draw", "b.octree", "--view", "-1,0,0", "-o", "-", "--format", "svg"});
+  EXPECT_NE(svg.out.find("<svg"), std::string::npos);
+  const Result text = done({"draw", "b.octree", "--view=-1,0,0", "-o", "-", "--format", "json"});
+  EXPECT_EQ(text.json()["strokes"].size(), 4u);
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "-"}, "--format svg");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "-", "--format", "png"}, "svg or json");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "-", "--format", "json", "--json"}, "--json");
+}
+
+TEST_F(Pictures, EveryFormatBeginsAsItShould) {
+  for (const auto& [name, magic] : std::vector<std::pair<std::string, std::string>>{
+           {"p.svg", "<"}, {"p.png", "\x89PNG"}, {"p.pdf", "%PDF"}, {"p.json", "{"}}) {
+    const Result result = done({"draw", "b.octree", "--view", "1,2,3", "-o", name});
+    EXPECT_EQ(read(name).substr(0, magic.size()), magic);
+    EXPECT_NE(result.out.find(name + ": 9 strokes"), std::string::npos) << result.out;
+  }
+  EXPECT_EQ(files(), (std::vector<std::string>{"b.octree", "p.json", "p.pdf", "p.png", "p.svg"}));
+}
+
+TEST_F(Pictures, PageSizes) {
+  // Seen from the front a cube is square: the page stands; a flat box makes it lie down.
+  make_box("flat.octree", 4, {0, 4, 4}, {16, 10, 6});
+  const auto svg = [&](const std::string& file, const std::string& size) {
+    return done({"draw", file, "--view", "0,-1,0", "-o", "-", "--format", "svg", "--size", size, "--pen-width", "0.5"})
+        .out;
+  };
+  EXPECT_NE(svg("b.octree", "A4").find("width=\"210mm\" height=\"297mm\""), std::string::npos);
+  EXPECT_NE(svg("flat.octree", "a4").find("width=\"297mm\" height=\"210mm\""), std::string::npos);
+  EXPECT_NE(svg("flat.octree", "A6").find("width=\"148mm\" height=\"105mm\""), std::string::npos);
+  EXPECT_NE(svg("flat.octree", "100x150").find("width=\"100mm\" height=\"150mm\""), std::string::npos);
+  for (const char* size : {"A9", "B4", "100", "100x", "0x10", "-5x10", "nanx10", "1x2x3", "1e9x1e9", "5x5"})
+    refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.svg", "--size", size}, "");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.svg", "--pen-width", "0"}, "--pen-width");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.json", "--size", "A4"}, "--size");
+}
+
+TEST_F(Pictures, DrawRefusals) {
+  for (const char* view : {"0,0,0", "nan,0,1", "1,2", "1,2,3,4", "inf,0,0", "1;2;3", "a,b,c", "1, 2,3", ""})
+    refused({"draw", "b.octree", "--view", view, "-o", "p.svg"}, "--view");
+  refused({"draw", "b.octree", "-o", "p.svg"}, "--view");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.gif"}, ".svg, .json, .png or .pdf");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.svg", "--format", "pdf"}, "--format pdf");
+}
+
+TEST_F(Pictures, ExportedVolumesComeBackTheSame) {
+  const std::string runs = done({"export", "b.octree", "-o", "-"}).out;
+  for (const char* name : {"v.nrrd", "v.nii", "v.nii.gz", "v.mha"}) {
+    SCOPED_TRACE(name);
+    done({"export", "b.octree", "-o", name});
+    done({"build", name, "-o", "back.octree"});
+    EXPECT_EQ(done({"export", "back.octree", "-o", "-"}).out, runs);
+    done({"export", "b.octree", "-o", name, "--crop"});
+    done({"build", name, "-o", "back.octree"});
+    EXPECT_EQ(done({"info", "back.octree", "--json"}).json()["bounding_box"], json::parse("[[0,0,0],[6,6,6]]"));
+    EXPECT_EQ(done({"info", "back.octree", "--json"}).json()["depth"], 3);
+  }
+}
+
+TEST_F(Pictures, ExportedMeshesAreClosedAndComeBackTheSame) {
+  const std::string runs = done({"export", "b.octree", "-o", "-"}).out;
+  for (const char* name : {"m.stl", "m.obj", "m.ply"}) {
+    SCOPED_TRACE(name);
+    const json report = done({"export", "b.octree", "-o", name, "--json"}).json();
+    EXPECT_EQ(report["triangles"], 2 * 6 * 36);
+    EXPECT_EQ(report["file_bytes"], std::filesystem::file_size(folder() / name));
+    done({"build", name, "-o", "back.octree", "--like", "b.octree"});
+    EXPECT_EQ(done({"export", "back.octree", "-o", "-"}).out, runs);
+  }
+  done({"export", "b.octree", "-o", "b.runs"});
+  EXPECT_EQ(read("b.runs"), runs);
+}
+
+TEST_F(Pictures, ExportRefusals) {
+  refused({"export", "b.octree", "-o", "b.xyz"}, "unknown suffix '.xyz'");
+  refused({"export", "b.octree", "-o", "b"}, "unknown suffix");
+  refused({"export", "b.octree", "-o", "b.stl", "--crop"}, "--crop");
+  refused({"export", "b.octree", "-o", "-", "--json"}, "--json");
+  make_box("deep.octree", 12, {0, 0, 0}, {1, 1, 1});
+  refused({"export", "deep.octree", "-o", "deep.nrrd"}, "");
+  done({"export", "deep.octree", "-o", "deep.nrrd", "--crop"});
+}
+
+}  // namespace
+}  // namespace blackleaf::test
