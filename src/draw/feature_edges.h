@@ -2,8 +2,12 @@
 //
 // A lattice edge has four voxels around it, A = (b, c), B = (b-1, c), C = (b, c-1), D = (b-1, c-1) in the plane of the
 // other two axes. The boundary is flat there, or absent, iff A = B and C = D, or A = C and B = D; every other edge is a
-// feature edge. Those whose rays are blocked from their first step on are dropped at once: for a ray in general
-// position the voxel it enters is black, for one in a lattice plane both voxels beside it are.
+// feature edge. Those that can add nothing to the picture are dropped at once:
+//
+//   general   the voxel that the rays enter first is black: they are blocked from there on.
+//   in_plane  one of the two voxels that the rays run between first is black. If both are, the rays are blocked. If one
+//             is, a free ray leaves the last such place, towards two white voxels, through a lattice edge; of the four
+//             voxels there just one is black, so it is a feature edge, it is visible, and it has the same picture.
 #pragma once
 
 #include <array>
@@ -44,7 +48,7 @@ constexpr std::uint64_t moved_up(std::uint64_t brick, std::uint64_t lower, unsig
 constexpr std::uint64_t candidates(const EdgeFamily& family, std::uint64_t A, std::uint64_t B, std::uint64_t C,
                                    std::uint64_t D) {
   const std::uint64_t feature = ((A ^ B) | (C ^ D)) & ((A ^ C) | (B ^ D));
-  if (family.mode == EdgeFamily::Mode::in_plane) return feature & ~(family.d_c > 0 ? A & B : C & D);
+  if (family.mode == EdgeFamily::Mode::in_plane) return feature & ~(family.d_c > 0 ? A | B : C | D);
   return feature & ~(family.d_b > 0 ? (family.d_c > 0 ? A : C) : (family.d_c > 0 ? B : D));
 }
 
