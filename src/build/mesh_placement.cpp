@@ -1,5 +1,6 @@
 // Universes for meshes.
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "blackleaf/error.h"

@@ -1,16 +1,13 @@
 #include "blackleaf/voxels.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <memory>
 #include <string>
-#include <type_traits>
-#include <vector>
 
 #include "blackleaf/error.h"
 #include "octree/brick.h"
 #include "octree/produce.h"
+#include "row_bits.h"
 
 namespace blackleaf {
 namespace {
@@ -28,38 +25,6 @@ struct Block {
   std::array<std::uint64_t, std::size_t{1} << 3 * (kBlockLevel - 2)> bricks;
 };
 
-// Eight bytes of 0 or 1 to eight bits: byte i meets the factor's bit 7 (8 - i) and lands in bit 56 + i without carries.
-inline std::uint64_t pack_bytes(const std::uint8_t* flags) {
-  static_assert(std::endian::native == std::endian::little);
-  std::uint64_t bytes;
-  std::memcpy(&bytes, flags, sizeof bytes);
-  return (bytes * 0x0102040810204080u) >> 56;
-}
-
-// Bit i: the predicate of value i. Requires: 1 <= count <= 64.
-template <class T, class Inside>
-std::uint64_t row_bits(const T* values, int count, const Inside& inside) {
-  std::array<std::uint8_t, 64> flags;
-  if (count == 64) {
-    for (std::size_t i = 0; i < 64; ++i) flags[i] = inside(values[i]);  // fixed length: becomes vector code
-  } else {
-    flags.fill(0);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) flags[i] = inside(values[i]);
-  }
-  std::uint64_t bits = 0;
-  for (unsigned byte = 0; byte < 8; ++byte) bits |= pack_bytes(flags.data() + 8 * byte) << (8 * byte);
-  return bits;
-}
-
-// Both comparisons always, so that the loop above has no branches.
-template <class T>
-struct InRange {
-  T low, high;
-  std::uint8_t operator()(T value) const {
-    return static_cast<std::uint8_t>(static_cast<unsigned>(low <= value) & static_cast<unsigned>(value <= high));
-  }
-};
-
 template <class T, class Inside>
 class VoxelProducer {
  public:
@@ -75,6 +40,7 @@ class VoxelProducer {
       low_[i] = corner[i];
       high_[i] = corner[i] + volume.size[i];
     }
+    last_ = volume.size[0] * volume.size[1] * volume.size[2] - 1;
     // Blocks must not be larger than the pieces that produce() hands to its threads, three levels below the root.
     block_level_ = depth <= 5 ? std::max(depth, 2) : std::min(depth - 3, kBlockLevel);
   }
@@ -101,9 +67,15 @@ class VoxelProducer {
   }
 
  private:
+  static constexpr std::int64_t kLine = 64 / sizeof(T);  // values in a cache line
+
   static std::size_t index(int x, int y, int z) {
     constexpr int kBits = kBlockLevel - 2;
     return static_cast<std::size_t>(x | y << kBits | z << 2 * kBits);
+  }
+
+  std::int64_t row_offset(std::int64_t y, std::int64_t z) const {
+    return volume_.size[0] * (y - low_[1] + volume_.size[1] * (z - low_[2]));
   }
 
   // Fills the block's bricks; the result is its colour.
@@ -118,9 +90,13 @@ class VoxelProducer {
         for (int row = 0; row < 16; ++row) {
           const std::int64_t y = cube.y + 4 * by + (row & 3), z = cube.z + 4 * bz + (row >> 2);
           if (y < low_[1] || y >= high_[1] || z < low_[2] || z >= high_[2]) continue;
-          const std::int64_t offset = x0 - low_[0] + volume_.size[0] * (y - low_[1] + volume_.size[1] * (z - low_[2]));
-          rows[static_cast<std::size_t>(row)] = row_bits(volume_.data + offset, static_cast<int>(x1 - x0), inside_)
-                                                << (x0 - cube.x);
+          const std::int64_t offset = x0 - low_[0] + row_offset(y, z);
+          // The block's rows lie far apart in memory, where no hardware sees them coming: ask for the next brick's now.
+          for (std::int64_t ahead = offset + 4 * volume_.size[0]; ahead < offset + 4 * volume_.size[0] + (x1 - x0);
+               ahead += kLine)
+            __builtin_prefetch(volume_.data + std::min(ahead, last_));
+          rows[static_cast<std::size_t>(row)] =
+              detail::row_bits(volume_.data + offset, static_cast<int>(x1 - x0), inside_) << (x0 - cube.x);
         }
         std::uint64_t any_row = 0, all_rows = ~std::uint64_t{0};
         for (const std::uint64_t row : rows) {
@@ -154,6 +130,7 @@ class VoxelProducer {
   const VolumeView<T>& volume_;
   const Inside& inside_;
   std::array<std::int64_t, 3> low_{}, high_{};  // the volume in universe coordinates, [low, high)
+  std::int64_t last_;                           // index of the last value
   int block_level_;
 };
 
@@ -199,7 +176,7 @@ int depth_for(const std::array<std::int64_t, 3>& size) {
 template <class T>
 Octree octree_from_voxels(const VolumeView<T>& volume, ValueRange<T> inside, VolumePlacement placement, Frame frame,
                           const Work& work) {
-  return build(volume, InRange<T>{inside.low, inside.high}, placement, std::move(frame), work);
+  return build(volume, detail::InRange<T>(inside.low, inside.high), placement, std::move(frame), work);
 }
 
 template <class T>
