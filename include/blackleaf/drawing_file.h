@@ -12,7 +12,8 @@ struct PageOptions {
   double width_mm = 0, height_mm = 0;  // page; 0: the drawing's own shape, 180 mm on its longer side
   double margin_mm = 10;
   double pen_width_mm = 0.25;
-  double dots_per_inch = 200;          // PNG only
+  double dots_per_inch = 200;  // PNG only
+  std::string title;           // what is drawn, for SVG and PDF; UTF-8, may be empty
 };
 
 /// SVG text: millimetres, one <polyline> a stroke, metadata with the view.

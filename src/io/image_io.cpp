@@ -1,0 +1,248 @@
+#include "io/image_io.h"
+
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
+#include <nifti1_io.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <mutex>
+#include <streambuf>
+
+#include <fmt/format.h>
+
+#include "blackleaf/error.h"
+
+namespace blackleaf::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+// While ITK works: no warnings of its own on stderr; what is worth telling comes as an Error. ITK's switches are global
+// to the process, so only one thread at a time is inside.
+class Quiet {
+ public:
+  Quiet() : lock_(mutex()), warnings_(itk::Object::GetGlobalWarningDisplay()), cerr_(std::cerr.rdbuf(&nothing_)) {
+    itk::Object::SetGlobalWarningDisplay(false);
+    nifti_set_debug_level(0);
+  }
+  ~Quiet() {
+    nifti_set_debug_level(1);  // its default; it has no way to ask
+    std::cerr.rdbuf(cerr_);
+    itk::Object::SetGlobalWarningDisplay(warnings_);
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  class Nothing : public std::streambuf {
+    int_type overflow(int_type c) override { return traits_type::not_eof(c); }
+  };
+  static std::mutex& mutex() {
+    static std::mutex instance;
+    return instance;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  Nothing nothing_;
+  bool warnings_;
+  std::streambuf* cerr_;
+};
+
+// ITK's reasons run over many lines, with addresses and file names: what remains is the last thing they say.
+std::string reason(const std::exception& exception) {
+  const auto* itk_exception = dynamic_cast<const itk::ExceptionObject*>(&exception);
+  std::string text = itk_exception ? itk_exception->GetDescription() : exception.what();
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  if (const auto line = text.find_last_of('\n'); line != std::string::npos) text.erase(0, line + 1);
+  if (const auto prefix = text.rfind("): "); prefix != std::string::npos) text.erase(0, prefix + 3);
+  while (!text.empty() && (std::isspace(static_cast<unsigned char>(text.front())) || text.front() == '['))
+    text.erase(0, text.front() == '[' ? std::min(text.find("] "), text.size() - 2) + 2 : 1);
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  if (text.size() > 200) text.resize(200);
+  return text;
+}
+
+itk::ImageIOBase::Pointer make(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::nrrd:
+      return itk::NrrdImageIO::New().GetPointer();
+    case ImageFormat::nifti: {
+      const auto nifti = itk::NiftiImageIO::New();
+      nifti->SetLegacyAnalyze75Mode(itk::NiftiImageIOEnums::Analyze75Flavor::AnalyzeITK4);
+      return nifti.GetPointer();
+    }
+    case ImageFormat::meta: {
+      const auto meta = itk::MetaImageIO::New();
+      meta->SetDoublePrecision(17);
+      return meta.GetPointer();
+    }
+  }
+  return nullptr;
+}
+
+std::optional<Component> component_of(itk::IOComponentEnum type, std::size_t bytes) {
+  using enum itk::IOComponentEnum;
+  switch (type) {
+    case UCHAR:
+      return Component::u8;
+    case CHAR:
+      return Component::i8;
+    case USHORT:
+      return Component::u16;
+    case SHORT:
+      return Component::i16;
+    case UINT:
+    case ULONG:
+    case ULONGLONG:
+      return bytes == 8 ? Component::u64 : Component::u32;
+    case INT:
+    case LONG:
+    case LONGLONG:
+      return bytes == 8 ? Component::i64 : Component::i32;
+    case FLOAT:
+      return Component::f32;
+    case DOUBLE:
+      return Component::f64;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+const char* format_name(ImageFormat format) {
+  return format == ImageFormat::nrrd ? "NRRD" : format == ImageFormat::nifti ? "NIfTI" : "MetaImage";
+}
+
+std::string image_suffix(const fs::path& path) {
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  const std::string last = lower(path.extension().string());
+  if (last != ".gz") return last;
+  const std::string before = lower(path.stem().extension().string());
+  return before == ".nii" || before == ".img" || before == ".nia" ? before + last : last;
+}
+
+std::optional<ImageFormat> image_format(const fs::path& path) {
+  const std::string suffix = image_suffix(path);
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), suffix) != names.end();
+  };
+  if (is({".nrrd", ".nhdr"})) return ImageFormat::nrrd;
+  if (is({".nii", ".nii.gz", ".hdr", ".img", ".img.gz"})) return ImageFormat::nifti;
+  if (is({".mha", ".mhd"})) return ImageFormat::meta;
+  return std::nullopt;
+}
+
+std::size_t bytes_of(Component component) {
+  switch (component) {
+    case Component::u8:
+    case Component::i8:
+      return 1;
+    case Component::u16:
+    case Component::i16:
+      return 2;
+    case Component::u32:
+    case Component::i32:
+    case Component::f32:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
+struct ImageReader::Itk {
+  itk::ImageIOBase::Pointer io;
+  std::string name;
+  ImageFormat format;
+
+  [[noreturn]] void fail(const std::exception& exception) const {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: cannot be read as {}: {}", name, format_name(format), reason(exception)),
+                "the file is damaged or of another format");
+  }
+};
+
+ImageReader::ImageReader(const fs::path& path, ImageFormat format)
+    : itk_(std::make_unique<Itk>(Itk{nullptr, path.string(), format})) {
+  const Quiet quiet;
+  try {
+    itk_->io = make(format);
+    if (!itk_->io->CanReadFile(path.c_str()))
+      throw Error(ErrorCode::bad_input, fmt::format("{}: is not a {} file", path.string(), format_name(format)),
+                  "its contents are not what its name says; check where it comes from");
+    itk_->io->SetFileName(path.string());
+    itk_->io->ReadImageInformation();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& exception) {
+    itk_->fail(exception);
+  }
+  const auto& io = *itk_->io;
+  information_.components = static_cast<int>(io.GetNumberOfComponents());
+  information_.component = component_of(io.GetComponentType(), io.GetComponentSize());
+  const unsigned dimensions = io.GetNumberOfDimensions();
+  for (unsigned i = 0; i < dimensions; ++i) information_.size.push_back(static_cast<std::int64_t>(io.GetDimensions(i)));
+  for (unsigned i = 0; i < std::min(dimensions, 3u); ++i) {
+    information_.geometry.origin[i] = io.GetOrigin(i);
+    const std::vector<double> direction = io.GetDirection(i);
+    for (unsigned row = 0; row < 3; ++row)
+      information_.geometry.axes[i][row] = row < direction.size() ? direction[row] * io.GetSpacing(i) : 0.0;
+  }
+}
+
+ImageReader::~ImageReader() = default;
+
+void ImageReader::read(void* values) {
+  const Quiet quiet;
+  try {
+    const unsigned dimensions = itk_->io->GetNumberOfDimensions();
+    itk::ImageIORegion region(dimensions);
+    for (unsigned i = 0; i < dimensions; ++i) {
+      region.SetIndex(i, 0);
+      region.SetSize(i, itk_->io->GetDimensions(i));
+    }
+    itk_->io->SetIORegion(region);
+    itk_->io->Read(values);
+  } catch (const std::exception& exception) {
+    itk_->fail(exception);
+  }
+}
+
+void write_image(const fs::path& path, ImageFormat format, const std::array<std::int64_t, 3>& size,
+                 const ImageGeometry& geometry, const std::uint8_t* values) {
+  const Quiet quiet;
+  try {
+    const itk::ImageIOBase::Pointer io = make(format);
+    io->SetFileName(path.string());
+    io->SetNumberOfDimensions(3);
+    io->SetPixelType(itk::IOPixelEnum::SCALAR);
+    io->SetComponentType(itk::IOComponentEnum::UCHAR);
+    io->SetNumberOfComponents(1);
+    itk::ImageIORegion region(3);
+    for (unsigned i = 0; i < 3; ++i) {
+      const std::array<double, 3>& axis = geometry.axes[i];
+      const double spacing = std::hypot(axis[0], axis[1], axis[2]);
+      io->SetDimensions(i, static_cast<itk::SizeValueType>(size[i]));
+      io->SetOrigin(i, geometry.origin[i]);
+      io->SetSpacing(i, spacing);
+      io->SetDirection(i, std::vector<double>{axis[0] / spacing, axis[1] / spacing, axis[2] / spacing});
+      region.SetIndex(i, 0);
+      region.SetSize(i, static_cast<itk::SizeValueType>(size[i]));
+    }
+    io->SetIORegion(region);
+    io->SetUseCompression(format != ImageFormat::nifti);  // NIfTI goes by the suffix
+    io->WriteImageInformation();
+    io->Write(values);
+  } catch (const std::exception& exception) {
+    throw Error(ErrorCode::io, fmt::format("cannot be written as {}: {}", format_name(format), reason(exception)));
+  }
+}
+
+}  // namespace blackleaf::detail

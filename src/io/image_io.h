@@ -1,0 +1,62 @@
+// Volumes in and out through ITK. Only image_io.cpp sees ITK's headers; they bring an Eigen of their own, so this
+// header and that file do without Eigen.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace blackleaf::detail {
+
+enum class ImageFormat { nrrd, nifti, meta };
+/// "NRRD" and so on, for messages.
+const char* format_name(ImageFormat format);
+/// The format that a file's suffix stands for, in any case of letters.
+std::optional<ImageFormat> image_format(const std::filesystem::path& path);
+/// The suffix in small letters, ".nii.gz" and ".img.gz" in one piece; empty if there is none.
+std::string image_suffix(const std::filesystem::path& path);
+
+enum class Component { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
+std::size_t bytes_of(Component component);
+
+/// World = origin + sum of p[i] axes[i], where p counts voxels from the *centre* of the first one.
+struct ImageGeometry {
+  std::array<double, 3> origin{};
+  std::array<std::array<double, 3>, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+};
+
+/// What a volume's header says.
+struct ImageInformation {
+  std::vector<std::int64_t> size;      // of every dimension the file has
+  int components = 1;                  // numbers a voxel
+  std::optional<Component> component;  // none: not a number
+  ImageGeometry geometry;
+};
+
+/// Reads one volume file. Errors are one line, Error(bad_input).
+class ImageReader {
+ public:
+  ImageReader(const std::filesystem::path& path, ImageFormat format);
+  ~ImageReader();
+  ImageReader(const ImageReader&) = delete;
+  ImageReader& operator=(const ImageReader&) = delete;
+
+  const ImageInformation& information() const { return information_; }
+  /// All values, the first dimension fastest. Requires: room for all of them.
+  void read(void* values);
+
+ private:
+  struct Itk;
+  std::unique_ptr<Itk> itk_;
+  ImageInformation information_;
+};
+
+/// Writes a three-dimensional uint8 volume. `path` must have one of the format's suffixes. Throws Error(io).
+void write_image(const std::filesystem::path& path, ImageFormat format, const std::array<std::int64_t, 3>& size,
+                 const ImageGeometry& geometry, const std::uint8_t* values);
+
+}  // namespace blackleaf::detail

@@ -1,0 +1,16 @@
+// Is a volume's header believable? Asked before memory is taken for its voxels.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "io/image_io.h"
+
+namespace blackleaf::detail {
+
+/// Throws Error(bad_input) when a volume of `voxels` values, `bytes` in memory, cannot be in the file (or in the data
+/// file that it names): raw values need their full length, compressed ones at least a thousandth of it. Throws
+/// Error(io) when a data file that the header names cannot be read.
+void check_believable(const std::filesystem::path& path, ImageFormat format, std::uint64_t voxels, std::uint64_t bytes);
+
+}  // namespace blackleaf::detail
