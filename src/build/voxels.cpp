@@ -16,6 +16,10 @@ std::string text(const std::array<std::int64_t, 3>& size) {
   return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]);
 }
 
+std::string point(const std::array<std::int64_t, 3>& p) {
+  return "(" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " + std::to_string(p[2]) + ")";
+}
+
 // Rows of up to 64 values are tested at a time and kept as bits; a block of 64^3 voxels (32 KiB of bits) stays in the
 // first-level cache while its bricks are put together, and each cache line of the volume is read once.
 constexpr int kBlockLevel = 6;
@@ -145,7 +149,7 @@ Octree build(const VolumeView<T>& volume, const Inside& inside, const VolumePlac
     if (placement.corner[i] < 0 || volume.size[i] > (std::int64_t{1} << kMaxDepth))
       throw Error(ErrorCode::bad_input,
                   "a volume of " + text(volume.size) + " voxels at " +
-                      text({placement.corner[0], placement.corner[1], placement.corner[2]}) +
+                      point({placement.corner[0], placement.corner[1], placement.corner[2]}) +
                       " does not fit any universe",
                   "place it at coordinates of 0 or more, with no side over 2^20 voxels");
     reach[i] = placement.corner[i] + volume.size[i];
@@ -156,7 +160,7 @@ Octree build(const VolumeView<T>& volume, const Inside& inside, const VolumePlac
   const int depth = placement.depth > 0 ? placement.depth : depth_for(reach);
   if (*std::max_element(reach.begin(), reach.end()) > std::int64_t{1} << depth)
     throw Error(ErrorCode::bad_input,
-                "the volume reaches to " + text(reach) + " but a universe of depth " + std::to_string(depth) + " to " +
+                "the volume reaches to " + point(reach) + " but a universe of depth " + std::to_string(depth) + " to " +
                     std::to_string(std::int64_t{1} << depth),
                 "use depth " + std::to_string(depth_for(reach)) + " or leave it open");
   return detail::produce(VoxelProducer<T, Inside>(volume, placement.corner, depth, inside), depth, std::move(frame),
@@ -169,7 +173,7 @@ int depth_for(const std::array<std::int64_t, 3>& size) {
   const std::int64_t longest = *std::max_element(size.begin(), size.end());
   for (int depth = 1; depth <= kMaxDepth; ++depth)
     if (longest <= std::int64_t{1} << depth) return depth;
-  throw Error(ErrorCode::bad_input, "a volume that reaches to " + text(size) + " voxels does not fit any universe",
+  throw Error(ErrorCode::bad_input, "a volume that reaches to " + point(size) + " voxels does not fit any universe",
               "no side may be over 2^20 voxels");
 }
 
