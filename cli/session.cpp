@@ -1,6 +1,7 @@
 #include "session.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -59,6 +60,11 @@ bool Session::parse() {
   std::string problem;
   try {
     app_.parse(std::move(reversed));
+    // TBB is told before its first task: it makes no more workers than the machine has cores unless asked beforehand,
+    // and some stages have no Work to hand it.
+    using Control = oneapi::tbb::global_control;
+    if (threads_)
+      thread_limit_ = std::make_shared<Control>(Control::max_allowed_parallelism, static_cast<std::size_t>(*threads_));
     return true;
   } catch (const CLI::CallForHelp&) {
     print_out(app_.help());

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -72,6 +72,7 @@ class Session {
   std::vector<std::string> arguments_;
   CLI::App app_;
   std::optional<int> threads_;
+  std::shared_ptr<void> thread_limit_;  // TBB's, for as long as the session lives
   bool json_ = false, quiet_ = false, timings_ = false;
   Clock::time_point start_ = Clock::now();
   std::vector<std::pair<std::string, double>> seconds_;  // by stage, in order of first use

@@ -30,7 +30,7 @@ TEST_F(Collide, ApartTouchingAndInterfering) {
   EXPECT_EQ(ask({"--translate", "-4,-3,0"})["distance"], 0.0);
   EXPECT_EQ(ask({"--translate", "-4,-3,0"})["interferes"], false);
   EXPECT_EQ(ask({"--translate", "-6,-5,-1"}),
-            json::parse(R"({"interferes":true,"overlap_volume":8,"distance":0.0,"mode":"voxelised"})"));
+            json::parse(R"({"interferes":true,"overlap_volume":4,"distance":0.0,"mode":"voxelised"})"));
 }
 
 TEST_F(Collide, InWords) {
@@ -39,7 +39,7 @@ TEST_F(Collide, InWords) {
   EXPECT_NE(apart.out.find("they do not interfere: 5 voxels apart, from (8, 8, 8)"), std::string::npos) << apart.out;
   const Result hit = run({"collide", "a.octree", "b.octree", "--translate", "-6,-5,-1"});
   EXPECT_EQ(hit.code, 1);
-  EXPECT_EQ(hit.out, "they interfere: the overlap is 8 voxels\n");
+  EXPECT_EQ(hit.out, "they interfere: the overlap is 4 voxels\n");
   EXPECT_EQ(hit.err, "");
   const Result quiet = run({"collide", "a.octree", "b.octree", "--translate", "-6,-5,-1", "--quiet"});
   EXPECT_EQ(quiet.code, 1);
