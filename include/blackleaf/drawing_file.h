@@ -13,7 +13,7 @@ struct PageOptions {
   double margin_mm = 10;
   double pen_width_mm = 0.25;
   double dots_per_inch = 200;  // PNG only
-  std::string title;           // what is drawn, for SVG and PDF; UTF-8, may be empty
+  std::string title = {};      // what is drawn, for SVG and PDF; UTF-8, may be empty
 };
 
 /// SVG text: millimetres, one <polyline> a stroke, metadata with the view.

@@ -11,9 +11,10 @@ namespace blackleaf {
 
 struct VolumeOptions {
   /// Values from low to high, both included, are inside; a side left out is unbounded. NaN is never inside.
-  std::optional<double> low, high;
-  /// Exactly this value is inside. At most one of range and label may be given; without either, any value > 0 is inside.
-  std::optional<double> label;
+  std::optional<double> low = {}, high = {};
+  /// Exactly this value is inside. At most one of range and label may be given; without either, any value > 0 is
+  /// inside.
+  std::optional<double> label = {};
   int depth = 0;        // 0: the smallest universe that holds the volume
   bool centre = false;  // centre the volume in the universe instead of putting it at the corner
 };

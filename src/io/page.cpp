@@ -12,6 +12,7 @@
 namespace blackleaf::detail {
 namespace {
 
+constexpr double kMost = 1e5;        // of any option: a page of 100 m
 constexpr double kLongerSide = 180;  // millimetres, when the options leave both sides open
 
 void check(const PageOptions& options) {

@@ -1,8 +1,13 @@
 #include "io/volume_header.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <memory>
+#include <new>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,7 +27,9 @@ enum class Packing { raw, text, hex, compressed, unlimited };
 struct Location {
   std::uint64_t available = 0;  // bytes that can hold values
   Packing packing = Packing::raw;
-  bool known = true;  // false: several data files, or skips; then nothing is claimed
+  bool known = true;         // false: several data files; then nothing is claimed
+  fs::path file;             // where the values are,
+  std::uint64_t offset = 0;  // from here on
 };
 
 std::string head_of(const fs::path& path, std::size_t limit) {
@@ -35,6 +42,14 @@ std::string head_of(const fs::path& path, std::size_t limit) {
     size += got;
   }
   return {reinterpret_cast<const char*>(bytes.data()), size};
+}
+
+std::string unpacked_head_of(const fs::path& path, unsigned limit) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  std::string head(limit, '\0');
+  const int got = file ? gzread(file.get(), head.data(), limit) : 0;
+  head.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return head;
 }
 
 std::string trimmed(std::string_view text) {
@@ -58,7 +73,24 @@ void for_each_field(const std::string& head, std::string_view separator, Line li
   }
 }
 
-std::uint64_t size_of(const fs::path& path) { return InputFile(path).size(); }
+// The values follow the header in the same file ...
+void place_behind(Location& location, const fs::path& path, std::uint64_t header) {
+  const std::uint64_t size = InputFile(path).size();
+  location.file = path;
+  location.offset = std::min(size, header);
+  location.available = size - location.offset;
+}
+
+// ... or are in a file of their own.
+void place_in(Location& location, const fs::path& header, const fs::path& file) {
+  location.file = file;
+  try {
+    location.available = InputFile(file).size();
+  } catch (const Error& error) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: its data file cannot be read: {}", header.string(), error.what()));
+  }
+}
 
 fs::path beside(const fs::path& header, const std::string& name) {
   return fs::path(name).is_absolute() ? fs::path(name) : header.parent_path() / name;
@@ -86,10 +118,9 @@ Location nrrd_location(const fs::path& path) {
   if (data_file.find(' ') != std::string::npos || data_file.starts_with("LIST")) {
     location.known = false;
   } else if (!data_file.empty()) {
-    location.available = size_of(beside(path, data_file));
+    place_in(location, path, beside(path, data_file));
   } else {
-    const std::uint64_t size = size_of(path);
-    location.available = size - std::min(size, header);
+    place_behind(location, path, header);
   }
   return location;
 }
@@ -112,25 +143,21 @@ Location meta_location(const fs::path& path) {
   if (data_file.starts_with("LIST") || data_file.find('%') != std::string::npos) {
     location.known = false;
   } else if (data_file == "LOCAL" || data_file == "Local" || data_file == "local") {
-    const std::uint64_t size = size_of(path);
-    location.available = size - std::min(size, header);
+    place_behind(location, path, header);
   } else {
-    location.available = size_of(beside(path, data_file));
+    place_in(location, path, beside(path, data_file));
   }
   return location;
 }
 
-// NIfTI and Analyze: the header is .nii itself, or .hdr beside .img or .img.gz. Returns also the raw bytes of a voxel.
+// NIfTI and Analyze: the header is .nii itself, or .hdr beside .img or .img.gz. Sets also the raw bytes of a voxel.
 Location nifti_location(const fs::path& path, std::uint64_t& bytes_per_voxel) {
   Location location;
   const std::string suffix = image_suffix(path);
+  fs::path header = path, data = path;
   if (suffix == ".nii.gz") {
     location.packing = Packing::compressed;
-    location.available = size_of(path);
-    return location;
-  }
-  fs::path header = path, data = path;
-  if (suffix != ".nii") {
+  } else if (suffix != ".nii") {
     fs::path base = path;
     if (suffix == ".img.gz") base.replace_extension();
     header = base.replace_extension(".hdr");
@@ -140,8 +167,9 @@ Location nifti_location(const fs::path& path, std::uint64_t& bytes_per_voxel) {
       location.packing = Packing::compressed;
     }
   }
-  const std::string head = head_of(header, 348);
-  if (head.size() == 348 && location.packing == Packing::raw) {
+  const std::string head = suffix == ".nii.gz" ? unpacked_head_of(path, 348) : head_of(header, 348);
+  double offset = 0;
+  if (head.size() == 348) {
     const auto get = [&]<class T>(T value, std::size_t at) {
       std::array<char, sizeof(T)> bytes;
       std::memcpy(bytes.data(), head.data() + at, sizeof(T));
@@ -153,14 +181,49 @@ Location nifti_location(const fs::path& path, std::uint64_t& bytes_per_voxel) {
     };
     const auto bits = get(std::int16_t{}, 72);
     if (bits > 0) bytes_per_voxel = static_cast<std::uint64_t>(bits) / 8;
-    const auto offset = get(float{}, 108);
-    location.available = size_of(data);
-    if (header == data && offset > 0 && offset < 1e9f)
-      location.available -= std::min(location.available, static_cast<std::uint64_t>(offset));
-  } else {
-    location.available = size_of(data);
+    offset = get(float{}, 108);
   }
+  if (header == data) {
+    const bool packed = location.packing == Packing::compressed;
+    place_behind(location, path, !packed && offset > 0 && offset < 1e9 ? static_cast<std::uint64_t>(offset) : 0);
+  } else
+    place_in(location, path, data);
   return location;
+}
+
+// Unpacks gzip or zlib data and throws the result away: false unless they are whole, their checksums right, and at
+// least `needed` bytes long. ITK's readers notice little of this (MetaIO takes whatever comes out of half a stream).
+bool inflates_to(const Location& location, std::uint64_t needed) {
+  const InputFile file(location.file);
+  z_stream stream{};
+  constexpr int kGzipOrZlib = 15 + 32;
+  if (inflateInit2(&stream, kGzipOrZlib) != Z_OK) throw std::bad_alloc();
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> closer(&stream, inflateEnd);
+  std::vector<std::uint8_t> in(std::size_t{1} << 16), out(std::size_t{1} << 18);
+  std::uint64_t at = location.offset;
+  std::uint64_t produced = 0;
+  const std::uint64_t end = location.offset + location.available;
+  int status = Z_OK;
+  for (;;) {
+    if (stream.avail_in == 0 && at < end) {
+      const std::span part =
+          std::span(in).first(static_cast<std::size_t>(std::min<std::uint64_t>(in.size(), end - at)));
+      file.read_at(at, part);
+      at += part.size();
+      stream.next_in = part.data();
+      stream.avail_in = static_cast<unsigned>(part.size());
+    }
+    if (status == Z_STREAM_END) {
+      // Files may hold several gzip members, one behind the other; anything else at the end is of no concern.
+      if (produced >= needed || stream.avail_in == 0) return produced >= needed;
+      if (inflateReset(&stream) != Z_OK) return false;
+    }
+    stream.next_out = out.data();
+    stream.avail_out = static_cast<unsigned>(out.size());
+    status = inflate(&stream, Z_NO_FLUSH);
+    produced += out.size() - stream.avail_out;
+    if (status != Z_OK && status != Z_STREAM_END) return false;  // damaged, or at its end too early
+  }
 }
 
 }  // namespace
@@ -175,13 +238,17 @@ void check_believable(const fs::path& path, ImageFormat format, std::uint64_t vo
   const std::uint64_t needed = location.packing == Packing::raw          ? voxels * stored
                                : location.packing == Packing::text       ? 2 * voxels - 1
                                : location.packing == Packing::hex        ? 2 * bytes
-                               : location.packing == Packing::compressed ? bytes / 1040
+                               : location.packing == Packing::compressed ? voxels * stored / 1040
                                                                          : 1;
   if (location.available < needed)
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: its header tells of {} voxels, which need at least {} bytes, but there are {}",
                             path.string(), voxels, needed, location.available),
                 "the file was cut off or its header is damaged; get it again from its source");
+  if (location.packing == Packing::compressed && !inflates_to(location, voxels * stored))
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: its compressed values are damaged or fewer than its header tells", path.string()),
+                "get it again from its source");
 }
 
 }  // namespace blackleaf::detail

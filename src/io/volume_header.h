@@ -1,4 +1,4 @@
-// Is a volume's header believable? Asked before memory is taken for its voxels.
+// Is a volume file believable? Asked before memory is taken for its voxels.
 #pragma once
 
 #include <cstdint>
