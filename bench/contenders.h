@@ -12,12 +12,16 @@
 
 namespace blackleaf::bench {
 
-/// Registers a contender; `run` is a benchmark function of state. Time on the wall counts, since some use threads.
+/// Registers a contender; `run` is a benchmark function of state. Elapsed time and the process's
+/// CPU time are both measured; bench/compare says which one counts.
 /// What is counted is, in this order: the counter "bytes" if set, the time per item if items are set, else the time per
 /// iteration.
 template <class Run>
 benchmark::internal::Benchmark* contender(const std::string& key, const std::string& who, Run run) {
-  return benchmark::RegisterBenchmark((key + "@" + who).c_str(), run)->UseRealTime()->Unit(benchmark::kMillisecond);
+  return benchmark::RegisterBenchmark((key + "@" + who).c_str(), run)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
 }
 
 // One function a subject, each in a file of its own.

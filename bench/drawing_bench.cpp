@@ -33,19 +33,17 @@ void paper(benchmark::State& state, const Octree& octree) {
 void add_drawing() {
   for (const int threads : {1, 2}) {
     const std::string suffix = "/t" + std::to_string(threads);
-    for (const int depth : {7, 8, 9})
-      contender("draw/" + side_name(depth) + suffix, "ours",
-                [=](benchmark::State& s) { ours(s, bunny(depth), threads); });
-    if (threads == 1) contender("draw/64/t1", "ours", [](benchmark::State& s) { ours(s, bunny(6), 1); });
-    if (threads == 1) contender("draw/64/t1", "paper", [](benchmark::State& s) { paper(s, bunny(6)); });
-    if (threads == 1) contender("draw/128/t1", "paper", [](benchmark::State& s) { paper(s, bunny(7)); });
-    for (const int radius : {8, 16, 32, 64})
-      contender("draw/ball" + std::to_string(radius) + suffix, "ours",
-                [=](benchmark::State& s) { ours(s, ball_of_radius(radius), threads); });
-    for (const int radius : {8, 16, 32})
-      if (threads == 1)
-        contender("draw/ball" + std::to_string(radius) + "/t1", "paper",
-                  [=](benchmark::State& s) { paper(s, ball_of_radius(radius)); });
+    for (const int depth : {6, 7, 8, 9}) {
+      const std::string key = "draw/" + side_name(depth) + suffix;
+      contender(key, "ours", [=](benchmark::State& s) { ours(s, bunny(depth), threads); });
+      if (threads == 1 && depth <= 7) contender(key, "paper", [=](benchmark::State& s) { paper(s, bunny(depth)); });
+    }
+    for (const int radius : {8, 16, 32, 64}) {
+      const std::string key = "draw/ball" + std::to_string(radius) + suffix;
+      contender(key, "ours", [=](benchmark::State& s) { ours(s, ball_of_radius(radius), threads); });
+      if (threads == 1 && radius <= 32)
+        contender(key, "paper", [=](benchmark::State& s) { paper(s, ball_of_radius(radius)); });
+    }
   }
 }
 
