@@ -64,7 +64,7 @@ std::string as_text(const std::string& name, const OctreeFile& file, const Measu
   line("runs", grouped(measures.runs) + " on the Millar curve");
   line("in memory", grouped(file.octree.memory_bytes()) + " bytes");
   line("on disk", grouped(file.file_bytes) + " bytes");
-  line("frame", fmt::format("origin {}, unit {}", vector_text(frame.origin), frame.unit));
+  line("frame", fmt::format("origin {}, unit: {}", vector_text(frame.origin), frame.unit));
   for (Eigen::Index i = 0; i < 3; ++i)
     line("", fmt::format("one voxel along {}: {}", "xyz"[i], vector_text(frame.axes.col(i))));
   if (file.metadata != "{}") line("metadata", file.metadata);

@@ -33,6 +33,42 @@ std::uint64_t peak_memory() {
 #endif
 }
 
+// Help texts: descriptions wrapped to a column, no list of mutual exclusions (the error message tells).
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kColumn); }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text =
+        option->get_type_name().empty() || option->get_type_size() == 0 ? "" : " " + option->get_type_name();
+    if (option->get_expected_max() > 1) text += " ...";
+    return option->get_required() && !option->get_positional() ? text + " (required)" : text;
+  }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    const std::string words = option->get_description();
+    std::string text;
+    std::size_t width = 0;
+    for (std::size_t at = 0; at < words.size();) {
+      const std::size_t end = std::min(words.find(' ', at), words.size());
+      if (width > 0 && width + 1 + (end - at) > kTextWidth) {
+        text += '\n';
+        width = 0;
+      } else if (width > 0) {
+        text += ' ';
+        ++width;
+      }
+      text += words.substr(at, end - at);
+      width += end - at;
+      at = end + 1;
+    }
+    return text;
+  }
+
+ private:
+  static constexpr std::size_t kColumn = 30, kTextWidth = 68;
+};
+
 void check_interrupt() {
   if (interrupted()) throw Error(ErrorCode::cancelled, "interrupted");
 }
@@ -41,20 +77,21 @@ void check_interrupt() {
 
 Session::Session(const std::string& command, const std::string& description, std::vector<std::string> arguments)
     : command_(command), arguments_(std::move(arguments)), app_(description, "blackleaf " + command) {
-  app_.get_formatter()->column_width(34);
+  app_.formatter(std::make_shared<HelpFormatter>());
   app_.set_help_flag("-h,--help", "print this help and exit");
-  // One group of its own, below the subcommand's options.
-  const std::string group = "Options of every command";
-  add_integer(app_, "--threads", threads_, 1, kMaxThreads, "threads to use (default: all of the machine)")
-      ->group(group);
-  app_.add_flag("--quiet", quiet_, "no summary, warnings or progress bar")->group(group);
-  app_.add_flag("--timings", timings_, "last line of standard error: JSON with seconds by stage, threads, peak memory")
-      ->group(group);
 }
 
 void Session::add_json() { app_.add_flag("--json", json_, "report as one JSON object"); }
 
 bool Session::parse() {
+  // Declared last, to stand below the subcommand's own options.
+  const std::string group = "Options of every command";
+  add_integer(app_, "--threads", threads_, 1, kMaxThreads, "threads to use (default: all of the machine)")
+      ->group(group);
+  app_.add_flag("--quiet", quiet_, "no summary, warnings or progress bar")->group(group);
+  app_.add_flag("--timings", timings_,
+                "last line of standard error: one JSON object with seconds by stage, threads, peak memory in bytes")
+      ->group(group);
   // CLI11 takes the arguments last first.
   std::vector<std::string> reversed(arguments_.rbegin(), arguments_.rend());
   std::string problem;

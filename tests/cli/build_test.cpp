@@ -146,6 +146,10 @@ TEST_F(BuildCommand, RunsAreReadAsTheyArePrinted) {
   EXPECT_EQ(info("r.octree")["volume"], 54);
   EXPECT_EQ(info("r.octree")["runs"], 3);
   EXPECT_EQ(done({"export", "r.octree", "-o", "-"}).out, runs);
+  // White first, with colours and runs that merge.
+  write("w.runs", "5 0\n3 7\n4 2\n52 0\n");
+  done({"build", "w.runs", "-o", "w.octree"});
+  EXPECT_EQ(done({"export", "w.octree", "-o", "-"}).out, "5 0\n7 1\n52 0\n");
 }
 
 TEST_F(BuildCommand, SameInputGivesTheSameBytesOnAnyNumberOfThreads) {
