@@ -20,9 +20,9 @@ namespace {
 using namespace detail::format;
 using Bytes = std::vector<std::uint8_t>;
 
-// Run lengths of smooth surfaces, depths 9 to 12: level 1 is a tenth larger and 1.5 times as fast, level 9 a sixth
-// smaller and five times as slow (docs/FILE_FORMAT.md has the figures).
-constexpr int kCompressionLevel = 3;
+// Run lengths of real surfaces at depths 9 to 11: level 3 gains up to a tenth for twice the time, level 9 a fifth for
+// ten times the time (docs/FILE_FORMAT.md has the figures). Level 1 keeps writing as fast as walking the tree.
+constexpr int kCompressionLevel = 1;
 
 struct FreeContext {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }

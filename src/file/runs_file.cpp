@@ -36,7 +36,7 @@ class RunCollector {
     total_ += count;
     if (count == 0) return;
     const bool black = colour != 0;
-    if (black == (counts_.size() % 2 == 1)) {
+    if (!counts_.empty() && black == (counts_.size() % 2 == 1)) {
       counts_.back() += count;
     } else {
       if (counts_.empty() && !black) counts_.push_back(0);
