@@ -25,8 +25,8 @@ bool interferes_exactly(const Octree& a, const Octree& b, const Motion& motion_o
 
 /// Two nearest points of two solids.
 struct Distance {
-  double voxels = 0;                      // Euclidean; 0 when they touch or interfere
-  std::int64_t squared = 0;               // the same, exact
+  double voxels = 0;                           // Euclidean; 0 when they touch or interfere
+  std::int64_t squared = 0;                    // the same, exact
   std::array<std::int32_t, 3> on_a{}, on_b{};  // witness points, corners of the lattice
 };
 /// The distance of two solids of one universe, or none if one is empty. Throws as above. Branch and bound over pairs of

@@ -8,7 +8,8 @@
 // Worked example (MHF92): order 2, number 30 = 011 110. Table 1 sends 011 to octant (0,0,1) and on to table 4, which
 // sends 110 to (0,1,1): x = 00, y = 01, z = 11 in binary, so voxel (0,1,3).
 //
-// What follows: consecutive voxels share a face; the numbers of a node of level k are one interval [first, first + 8^k).
+// What follows: consecutive voxels share a face; the numbers of a node of level k are one interval [first, first +
+// 8^k).
 #pragma once
 
 #include <array>

@@ -11,8 +11,8 @@
 
 namespace blackleaf {
 
-/// A parallel projection. The viewer is at infinity in direction d; right u = up x d normalised, v = d x u, up is +z, or
-/// +y when d is parallel to z. A point p lands at (u.p, v.p), voxel units, v upward.
+/// A parallel projection. The viewer is at infinity in direction d; right u = up x d normalised, v = d x u, up is +z,
+/// or +y when d is parallel to z. A point p lands at (u.p, v.p), voxel units, v upward.
 class View {
  public:
   /// `direction` toward the viewer. Directions with whole-number components (up to 2^20 in size, after division by

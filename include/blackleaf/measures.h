@@ -20,13 +20,13 @@ struct Box {
 
 struct Measures {
   std::uint64_t black_leaves = 0, white_leaves = 0;
-  std::uint64_t internal_nodes = 0;                 // I = (T - 1) / 8 with T all nodes (WA87, lemma)
-  std::vector<std::uint64_t> black_leaves_by_level; // index = level, depth + 1 entries
-  std::uint64_t volume = 0;                         // black voxels
-  std::uint64_t surface_area = 0;                   // unit faces between black and white; outside the universe is white
-  std::optional<Box> bounding_box;                  // none for the empty solid
-  std::optional<Eigen::Vector3d> centroid;          // in voxel coordinates; none for the empty solid
-  std::uint64_t runs = 0;                           // maximal runs on the Millar curve
+  std::uint64_t internal_nodes = 0;                  // I = (T - 1) / 8 with T all nodes (WA87, lemma)
+  std::vector<std::uint64_t> black_leaves_by_level;  // index = level, depth + 1 entries
+  std::uint64_t volume = 0;                          // black voxels
+  std::uint64_t surface_area = 0;           // unit faces between black and white; outside the universe is white
+  std::optional<Box> bounding_box;          // none for the empty solid
+  std::optional<Eigen::Vector3d> centroid;  // in voxel coordinates; none for the empty solid
+  std::uint64_t runs = 0;                   // maximal runs on the Millar curve
 };
 
 /// All measures, exact but for the last rounding of the centroid. O(words).

@@ -56,7 +56,7 @@ struct FixedMotion {
 
   std::array<std::array<std::int64_t, 3>, 3> inverse_rotation{};  // A, rows
   std::array<std::int64_t, 3> inverse_translation{};              // b
-  std::array<std::int64_t, 3> forward_translation{};              // round(2^38 T), for questions about the target's extent
+  std::array<std::int64_t, 3> forward_translation{};  // round(2^38 T), for questions about the target's extent
 
   /// The same motion followed by a shift of whole voxels, without any rounding. Requires: |by_i| <= 2^20.
   FixedMotion shifted(const std::array<std::int64_t, 3>& by) const;

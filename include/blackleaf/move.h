@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "blackleaf/motion.h"
 #include "blackleaf/octree.h"
@@ -22,17 +23,17 @@ enum class Leaving {
 Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Leaving leaving = Leaving::error,
                  const Work& work = {});
 
-/// The solid moved by X' = RX + T: a target voxel is black iff its centre, moved back by FixedMotion, lies in the closed
-/// solid. Exact, and the same for every thread count. A solid leaves the universe when a corner of a moved black cube
-/// lies outside by more than 2^-16 voxels (no voxel centre is then lost). O(surface of source and target)
-/// (WA87, sections 3 and 4).
+/// The solid moved by X' = RX + T: a target voxel is black iff its centre, moved back by FixedMotion, lies in the
+/// closed solid. Exact, and the same for every thread count. A solid leaves the universe when a corner of a moved black
+/// cube lies outside by more than 2^-16 voxels (no voxel centre is then lost). O(surface of source and target) (WA87,
+/// sections 3 and 4).
 Octree move(const Octree& octree, const Motion& motion, Leaving leaving = Leaving::error, const Work& work = {});
 
 /// A compact source tree and its current motion: moving composes motions and never touches the source, so errors do not
 /// add up (WA87, section 3).
 class MovingObject {
  public:
-  explicit MovingObject(Octree source, Motion motion = {}) : source_(std::move(source)), motion_(motion) {}
+  explicit MovingObject(Octree source, Motion motion = {}) : source_(std::move(source)), motion_(std::move(motion)) {}
 
   const Octree& source() const { return source_; }
   const Motion& motion() const { return motion_; }

@@ -17,11 +17,12 @@
 // (curve.h) leaves their parents. The root word stands alone at level n.
 //
 // Worked example. Depth 3, black voxels exactly [0,4)^3 and (7,7,7): the root word is 0x0000'0000'0000'8001 (octant 0
-// black, octant 7 gray, first gray child at index 0 of level 2); level 2 holds one word, the brick 0x8000'0000'0000'0000.
-// Two words, 16 bytes.
+// black, octant 7 gray, first gray child at index 0 of level 2); level 2 holds one word, the brick
+// 0x8000'0000'0000'0000. Two words, 16 bytes.
 //
 // What follows: a solid with S surface voxels needs O(S) words, about S/8 bytes for smooth surfaces at the bricks and a
-// third of that above them; reading a voxel costs at most n - 1 dependent loads; two trees are equal iff their words are.
+// third of that above them; reading a voxel costs at most n - 1 dependent loads; two trees are equal iff their words
+// are.
 #pragma once
 
 #include <array>

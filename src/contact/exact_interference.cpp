@@ -129,8 +129,8 @@ class ExactTest {
   }
 
   FixedMotion motion_;
-  std::array<std::array<Wide, 3>, 3> adjoint_{};                   // [i][j]: X_i per (A X)_j, times det A
-  std::array<std::array<std::array<Wide, 3>, 3>, 3> crossed_{};    // [i][j]: e_i x (r_k x r_l)
+  std::array<std::array<Wide, 3>, 3> adjoint_{};                 // [i][j]: X_i per (A X)_j, times det A
+  std::array<std::array<std::array<Wide, 3>, 3>, 3> crossed_{};  // [i][j]: e_i x (r_k x r_l)
 };
 
 }  // namespace

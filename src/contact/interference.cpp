@@ -8,12 +8,19 @@
 namespace blackleaf {
 namespace {
 
+// Children that are not white, as a mask. Requires: a gray node of level >= 3.
+unsigned filled(const Node& node) { return static_cast<unsigned>((node.word() | node.word() >> 8) & 0xFF); }
+
 bool meet(const Node& a, const Node& b) {
   if (a.is_white() || b.is_white()) return false;
   if (a.is_black() || b.is_black()) return true;  // the other is black or gray, and every gray node has a black voxel
-  if (a.level() == 2) return (a.brick() & b.brick()) != 0;
-  for (int octant = 0; octant < 8; ++octant)
+  if (a.level() == 2) return (a.word() & b.word()) != 0;
+  const unsigned both = filled(a) & filled(b);
+  if (both & (a.word() | b.word())) return true;  // a black child against one that is not white
+  for (unsigned rest = both; rest; rest &= rest - 1) {
+    const int octant = std::countr_zero(rest);
     if (meet(a.child(octant), b.child(octant))) return true;
+  }
   return false;
 }
 

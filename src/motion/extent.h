@@ -25,8 +25,9 @@ struct TargetUniverse {
   std::array<std::int64_t, 3> offset{};
 };
 
-/// The universe for a solid of this extent: the old one if it holds it (up to 2^-16 voxels, see move.h) or when clipping; doubled toward
-/// the sides where it is left when growing. Throws Error(out_of_universe) with the sides and by how much.
+/// The universe for a solid of this extent: the old one if it holds it (up to 2^-16 voxels, see move.h) or when
+/// clipping; doubled toward the sides where it is left when growing. Throws Error(out_of_universe) with the sides and
+/// by how much.
 TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving);
 
 /// The frame of the target universe: world coordinates stay.

@@ -41,12 +41,8 @@ struct PairProducer {
       return colour_of(Operation::bits(0, all(task.b)));
     return Colour::gray;
   }
-  Task child(const Task& task, const Cube&, int octant) const {
-    return {task.a.child(octant), task.b.child(octant)};
-  }
-  std::uint64_t brick(const Task& task, const Cube&) const {
-    return Operation::bits(task.a.brick(), task.b.brick());
-  }
+  Task child(const Task& task, const Cube&, int octant) const { return {task.a.child(octant), task.b.child(octant)}; }
+  std::uint64_t brick(const Task& task, const Cube&) const { return Operation::bits(task.a.brick(), task.b.brick()); }
 };
 
 template <class Operation>

@@ -1,9 +1,9 @@
 // SourceWindow: the few nodes of a source tree that a target node may see.
 //
 // A target node of level k, moved back into the source, lies in a box that meets at most three cells of level k on
-// every axis: the box is less than sqrt(3) 2^k long, so with both ends closed it meets floor(sqrt(3)) + 2 = 3. The window holds
-// the source's nodes of level k for these cells; the window of a child is read off its parent's in at most 27 steps,
-// without a search from the root.
+// every axis: the box is less than sqrt(3) 2^k long, so with both ends closed it meets floor(sqrt(3)) + 2 = 3. The
+// window holds the source's nodes of level k for these cells; the window of a child is read off its parent's in at most
+// 27 steps, without a search from the root.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// Integer translation (AN84). The paper adds the displacement to every leaf's path; here every target node reads off the
-// (at most eight) source nodes of its own size that it covers, from the root down. Where the displacement is a multiple
-// of a node's side it covers exactly one, which is what the paper's lowest set bit H expresses.
+// Integer translation (AN84). The paper adds the displacement to every leaf's path; here every target node reads off
+// the (at most eight) source nodes of its own size that it covers, from the root down. Where the displacement is a
+// multiple of a node's side it covers exactly one, which is what the paper's lowest set bit H expresses.
 #include <array>
 #include <string>
 
@@ -48,7 +48,7 @@ struct TranslateProducer {
     bool above_source = false;  // the target node is larger than the whole source
   };
 
-  Node source;                        // at brick level at least
+  Node source;                       // at brick level at least
   std::array<std::int64_t, 3> by{};  // target = source + by
 
   CellRange cells(const Cube& cube) const {

@@ -1,10 +1,10 @@
 // corner_walk: visits every place where black and white meet, in time proportional to the tree.
 //
-// Lattice corner (x,y,z), 0 <= x,y,z <= 2^n, has eight voxels around it. The walk covers all corners by aligned cubes of
-// corners [c, c + 2^k)^3; around such a cube stand eight nodes of level k: m[0..7], m[7] being the node of those voxels
-// itself and bit i of the index saying whether the node is the main one (1) or the next lower one (0) along axis i.
-// Outside the universe everything is white. Where all eight are of one colour there is nothing to see; where each is of
-// one colour but not the same, boundary runs only along the planes x = c.x, y = c.y, z = c.z of the cube.
+// Lattice corner (x,y,z), 0 <= x,y,z <= 2^n, has eight voxels around it. The walk covers all corners by aligned cubes
+// of corners [c, c + 2^k)^3; around such a cube stand eight nodes of level k: m[0..7], m[7] being the node of those
+// voxels itself and bit i of the index saying whether the node is the main one (1) or the next lower one (0) along axis
+// i. Outside the universe everything is white. Where all eight are of one colour there is nothing to see; where each is
+// of one colour but not the same, boundary runs only along the planes x = c.x, y = c.y, z = c.z of the cube.
 #pragma once
 
 #include <array>

@@ -5,20 +5,23 @@
 namespace blackleaf::curve {
 
 Voxel voxel(int order, std::uint64_t number) {
-  assert(order >= 1 && order <= kMaxDepth && number >> (3 * order) == 0);
   const Cube c = cube(order, number, 0);
   return {c.x, c.y, c.z};
 }
 
 Cube cube(int order, std::uint64_t number, int level) {
-  Cube c{0, 0, 0, order};
+  assert(order >= 1 && order <= kMaxDepth && level >= 0 && level <= order && number >> (3 * order) == 0);
+  std::uint32_t x = 0, y = 0, z = 0;
   unsigned table = 0;
-  while (c.level > level) {
-    const Step step = kSteps[table][number >> (3 * (c.level - 1)) & 7];
-    c = c.child(step.octant);
+  for (int shift = 3 * (order - 1); shift >= 3 * level; shift -= 3) {
+    const Step step = kSteps[table][number >> shift & 7];
+    x = x << 1 | (step.octant & 1);
+    y = y << 1 | (step.octant >> 1 & 1);
+    z = z << 1 | step.octant >> 2;
     table = step.table;
   }
-  return c;
+  const auto at = [level](std::uint32_t bits) { return static_cast<std::int32_t>(bits << level); };
+  return {at(x), at(y), at(z), level};
 }
 
 std::uint64_t number(int order, Voxel voxel) { return first_number(order, {voxel.x, voxel.y, voxel.z, 0}); }

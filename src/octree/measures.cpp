@@ -105,8 +105,8 @@ struct FaceCounter {
     std::uint64_t half = 0;                              // bits whose second coordinate bit along the axis is 0
     for (unsigned bit = 0; bit < 64; ++bit) half |= std::uint64_t{!(bit >> (axis + 3) & 1)} << bit;
     // Coordinate c gets the bit of c - 1: 1 <- 0 and 3 <- 2 by near; 2 <- 1 by far - near; 0 <- 3 of the lower brick.
-    const std::uint64_t shifted = (main & even) << near | (main & ~even & half) << (far - near) |
-                                  (lower & ~even & ~half) >> (far + near);
+    const std::uint64_t shifted =
+        (main & even) << near | (main & ~even & half) << (far - near) | (lower & ~even & ~half) >> (far + near);
     return static_cast<unsigned>(std::popcount(main ^ shifted));
   }
 };

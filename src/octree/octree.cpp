@@ -75,7 +75,8 @@ Subtree NodeArrays::append(NodeArrays& stretch, Subtree top, int level) {
     levels_[k].insert(levels_[k].end(), from.begin(), from.end());
     std::vector<std::uint64_t>().swap(from);
   }
-  if (top.colour == Colour::gray && level >= 3) top.word = shifted(top.word, offset[static_cast<std::size_t>(level - 1)]);
+  if (top.colour == Colour::gray && level >= 3)
+    top.word = shifted(top.word, offset[static_cast<std::size_t>(level - 1)]);
   return top;
 }
 
@@ -97,8 +98,8 @@ Octree NodeArrays::finish(int depth, Subtree root, Frame frame) {
     tree->levels[k] = next;
     next += tree->counts[k];
   }
-  return Octree(std::make_shared<const Octree::Storage>(
-      Octree::Storage{depth, Colour::gray, std::move(tree), std::move(frame)}));
+  return Octree(
+      std::make_shared<const Octree::Storage>(Octree::Storage{depth, Colour::gray, std::move(tree), std::move(frame)}));
 }
 
 std::size_t NodeArrays::size() const {

@@ -14,8 +14,8 @@
 // is the universe; what it says of the other voxels is ignored (classify must then not answer black unless octant 0 is
 // black and not white unless it is white).
 //
-// The curve is cut into the stretches of nodes of one level; each is produced into arrays of its own and they are joined
-// in curve order, as MHF92 (section 4) joins its processors' tuples. The result does not depend on the cut.
+// The curve is cut into the stretches of nodes of one level; each is produced into arrays of its own and they are
+// joined in curve order, as MHF92 (section 4) joins its processors' tuples. The result does not depend on the cut.
 #pragma once
 
 #include <oneapi/tbb/parallel_for.h>
@@ -140,7 +140,8 @@ class Production {
     }
   }
 
-  Subtree join(const Cube& cube, std::uint8_t table, std::size_t& part, std::size_t& stretch, NodeArrays& arrays) const {
+  Subtree join(const Cube& cube, std::uint8_t table, std::size_t& part, std::size_t& stretch,
+               NodeArrays& arrays) const {
     const Colour colour = parts_[part++];
     if (cube.level == depth_ - kStretchLevels) return stretches_[stretch++].result;
     if (colour != Colour::gray) return Subtree::uniform(colour);

@@ -75,7 +75,8 @@ class Reader {
     std::uint64_t extra = count_;
     for (std::uint64_t count = 0; extra == 0 && next(count);) extra = count;
     if (extra > 0)
-      throw Error(ErrorCode::bad_input, "the stream is longer than the 8^" + std::to_string(depth_) + " voxels of its universe",
+      throw Error(ErrorCode::bad_input,
+                  "the stream is longer than the 8^" + std::to_string(depth_) + " voxels of its universe",
                   "give the depth it was made for");
     return arrays_.finish(depth_, root, std::move(frame));
   }
@@ -94,7 +95,8 @@ class Reader {
       if (pending_ == 0) continue;
       if (count_ > 0 && next_black_ != black_) return;
       black_ = next_black_;
-      if (pending_ > voxels_of(kMaxDepth)) pending_ = voxels_of(kMaxDepth) + 1;  // too long in any universe; no overflow
+      if (pending_ > voxels_of(kMaxDepth))
+        pending_ = voxels_of(kMaxDepth) + 1;  // too long in any universe; no overflow
       count_ += pending_;
       pending_ = 0;
     }

@@ -15,15 +15,15 @@ namespace detail {
 /// The words of all levels in one block, from the root down. Immutable once an Octree holds it.
 struct Words {
   std::vector<std::uint64_t> words;
-  std::array<std::size_t, kMaxDepth + 1> counts{};                // words of each level
-  std::array<const std::uint64_t*, kMaxDepth + 1> levels{};       // first word of each level
+  std::array<std::size_t, kMaxDepth + 1> counts{};           // words of each level
+  std::array<const std::uint64_t*, kMaxDepth + 1> levels{};  // first word of each level
 };
 
 }  // namespace detail
 
 struct Octree::Storage {
   int depth = 1;
-  Colour root = Colour::white;  // gray: the root's word is the only one of level `depth`
+  Colour root = Colour::white;                // gray: the root's word is the only one of level `depth`
   std::shared_ptr<const detail::Words> tree;  // null for a root of one colour
   Frame frame;
 };

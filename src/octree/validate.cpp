@@ -43,9 +43,12 @@ class Validator {
     }
     const std::uint64_t black = word & 0xFF, gray = word >> 8 & 0xFF, first = word >> 16;
     const auto count = static_cast<unsigned>(std::popcount(gray));
-    if (black & gray) problem_ = "a child both black and gray" + here();
-    else if (gray == 0 && (black == 0 || black == 0xFF)) problem_ = "a gray node of one colour" + here();
-    else if (gray == 0 && first != 0) problem_ = "a child index without gray children" + here();
+    if (black & gray)
+      problem_ = "a child both black and gray" + here();
+    else if (gray == 0 && (black == 0 || black == 0xFF))
+      problem_ = "a gray node of one colour" + here();
+    else if (gray == 0 && first != 0)
+      problem_ = "a child index without gray children" + here();
     const auto words = octree_.words(level - 1);
     if (problem_.empty() && gray && (first > words.size() || words.size() - first < count))
       problem_ = "a child index beyond the words of the level below" + here();

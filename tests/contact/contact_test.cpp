@@ -81,10 +81,10 @@ TEST(ExactInterference, LatticeMotionsAgreeWithMoving) {
     const Octree a = reference::octree(reference::random_solid(depth, random));
     const Octree b = reference::octree(reference::random_solid(depth, random));
     std::uniform_int_distribution<int> small(-3, 3);
-    const Motion motion =
-        (Motion::translation({static_cast<double>(small(random)), static_cast<double>(small(random)), static_cast<double>(small(random))}) *
-         Motion::rotation(Eigen::Vector3d::Unit(trial % 3), small(random) * 90 * kDegree))
-            .about(Eigen::Vector3d::Constant((1 << depth) / 2.0));
+    const Motion motion = (Motion::translation({static_cast<double>(small(random)), static_cast<double>(small(random)),
+                                                static_cast<double>(small(random))}) *
+                           Motion::rotation(Eigen::Vector3d::Unit(trial % 3), small(random) * 90 * kDegree))
+                              .about(Eigen::Vector3d::Constant((1 << depth) / 2.0));
     const bool expected = interferes(a, move(b, motion, Leaving::clip));
     ASSERT_EQ(interferes_exactly(a, b, motion), expected);
     hits += expected;
@@ -96,7 +96,8 @@ TEST(ExactInterference, LatticeMotionsAgreeWithMoving) {
 TEST(ExactInterference, TiltedCubesAtTheThreshold) {
   const Octree a = box(4, {7, 7, 7}, {8, 8, 8}), b = a;
   const auto at = [&](const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& shift) {
-    return interferes_exactly(a, b, (Motion::translation(shift) * Motion::rotation(axis, degrees * kDegree)).about({7.5, 7.5, 7.5}));
+    return interferes_exactly(
+        a, b, (Motion::translation(shift) * Motion::rotation(axis, degrees * kDegree)).about({7.5, 7.5, 7.5}));
   };
   // Touching faces do not interfere, a hair closer does.
   EXPECT_FALSE(at({0, 0, 1}, 0, {1, 0, 0}));
@@ -133,8 +134,10 @@ TEST(ExactInterference, NoSampledPointIsMissedAndItIsSymmetric) {
     int sampled = 0;
     for (int i = 0; i < 3000; ++i) {
       const Eigen::Vector3d p = Eigen::Vector3d(real(random), real(random), real(random)) * 8, q = back(p);
-      if (!grid_a.at(std::lround(std::floor(p.x())), std::lround(std::floor(p.y())), std::lround(std::floor(p.z())))) continue;
-      sampled += grid_b.at(std::lround(std::floor(q.x())), std::lround(std::floor(q.y())), std::lround(std::floor(q.z())));
+      if (!grid_a.at(std::lround(std::floor(p.x())), std::lround(std::floor(p.y())), std::lround(std::floor(p.z()))))
+        continue;
+      sampled +=
+          grid_b.at(std::lround(std::floor(q.x())), std::lround(std::floor(q.y())), std::lround(std::floor(q.z())));
     }
     ASSERT_TRUE(found || sampled == 0) << sampled;
     if (trial % 2) {

@@ -65,8 +65,9 @@ TEST(Move, LeavesExactlyWhenACornerDoes) {
       for (int z = 0; z < grid.side(); ++z)
         for (int y = 0; y < grid.side(); ++y)
           for (int x = 0; x < grid.side(); ++x)
-            ASSERT_EQ(clipped.contains(x, y, z), grown.contains(x + std::lround(offset.x()), y + std::lround(offset.y()),
-                                                                z + std::lround(offset.z())));
+            ASSERT_EQ(
+                clipped.contains(x, y, z),
+                grown.contains(x + std::lround(offset.x()), y + std::lround(offset.y()), z + std::lround(offset.z())));
     }
   }
 }
@@ -109,8 +110,8 @@ TEST(Move, IntegerTranslationsAreThoseOfTranslate) {
   for (int trial = 0; trial < 200; ++trial) {
     const Octree octree = reference::octree(reference::random_solid(1 + trial % 4, random));
     const std::array<std::int64_t, 3> by = {shift(random), shift(random), shift(random)};
-    const Motion motion = Motion::translation(
-        {static_cast<double>(by[0]), static_cast<double>(by[1]), static_cast<double>(by[2])});
+    const Motion motion =
+        Motion::translation({static_cast<double>(by[0]), static_cast<double>(by[1]), static_cast<double>(by[2])});
     EXPECT_TRUE(move(octree, motion, Leaving::clip) == translate(octree, by, Leaving::clip));
   }
 }
@@ -140,7 +141,8 @@ TEST(MovingObject, ErrorsDoNotAddUp) {
   const Motion step = Motion::rotation({1, 2, 3}, 10 * kDegree).about({32, 32, 32});
   for (int i = 0; i < 36; ++i) object = object.moved(step);
   EXPECT_TRUE(object.octree() == source);
-  const Motion odd = (Motion::translation({1.5, -2.25, 0.125}) * Motion::rotation({3, -1, 2}, 0.777)).about({32, 32, 32});
+  const Motion odd =
+      (Motion::translation({1.5, -2.25, 0.125}) * Motion::rotation({3, -1, 2}, 0.777)).about({32, 32, 32});
   EXPECT_TRUE(object.moved(odd).moved(odd.inverse()).octree() == source);
   // Moving trees instead of motions does lose.
   EXPECT_FALSE(move(move(source, odd), odd.inverse()) == source);

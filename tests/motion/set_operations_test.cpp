@@ -19,9 +19,8 @@ TEST(SetOperations, AgreeWithTheDenseGrid) {
     const Octree p = reference::octree(a), q = reference::octree(b);
     const auto check = [&](const Octree& result, auto operation) {
       DenseGrid expected(depth);
-      expected.for_each([&](int x, int y, int z, bool) {
-        expected.set(x, y, z, operation(a.at(x, y, z), b.at(x, y, z)));
-      });
+      expected.for_each(
+          [&](int x, int y, int z, bool) { expected.set(x, y, z, operation(a.at(x, y, z), b.at(x, y, z))); });
       reference::expect_valid(result);
       ASSERT_TRUE(result == reference::octree(expected));
     };

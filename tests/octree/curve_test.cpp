@@ -57,7 +57,8 @@ TEST(Curve, InverseAtDepthTwenty) {
 TEST(Curve, NodesAreIntervals) {
   std::mt19937_64 random(7);
   for (int trial = 0; trial < 2000; ++trial) {
-    const int order = 1 + static_cast<int>(random() % 20), level = static_cast<int>(random() % static_cast<unsigned>(order + 1));
+    const int order = 1 + static_cast<int>(random() % 20),
+              level = static_cast<int>(random() % static_cast<unsigned>(order + 1));
     const std::uint64_t i = random() >> (64 - 3 * order);
     const Cube cube = curve::cube(order, i, level);
     const std::uint64_t first = curve::first_number(order, cube);
@@ -76,7 +77,8 @@ TEST(Curve, NodesAreIntervals) {
 TEST(Brick, CurveOrderIsThatOfTheCurve) {
   for (unsigned i = 0; i < 64; ++i) {
     const curve::Voxel v = curve::voxel(2, i);
-    EXPECT_EQ(detail::kBrickOrder[0][i], detail::brick_bit(static_cast<unsigned>(v.x), static_cast<unsigned>(v.y), static_cast<unsigned>(v.z)));
+    EXPECT_EQ(detail::kBrickOrder[0][i],
+              detail::brick_bit(static_cast<unsigned>(v.x), static_cast<unsigned>(v.y), static_cast<unsigned>(v.z)));
   }
   for (unsigned bit = 0; bit < 64; ++bit)
     EXPECT_EQ(detail::brick_bit(detail::brick_x(bit), detail::brick_y(bit), detail::brick_z(bit)), bit);

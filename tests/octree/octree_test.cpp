@@ -131,7 +131,8 @@ TEST(Leaves, AreDisjointIncreasingIntervals) {
       end = leaf.first + (std::uint64_t{1} << (3 * leaf.cube.level));
       for (int z = 0; z < leaf.cube.side(); ++z)
         for (int y = 0; y < leaf.cube.side(); ++y)
-          for (int x = 0; x < leaf.cube.side(); ++x) drawn.set(leaf.cube.x + x, leaf.cube.y + y, leaf.cube.z + z, black);
+          for (int x = 0; x < leaf.cube.side(); ++x)
+            drawn.set(leaf.cube.x + x, leaf.cube.y + y, leaf.cube.z + z, black);
     });
     EXPECT_EQ(end, std::uint64_t{1} << (3 * grid.depth));
     EXPECT_TRUE(drawn == grid);
@@ -145,7 +146,9 @@ TEST(Classifier, RefusesImpossibleDepths) {
 }
 
 TEST(Classifier, CanBeInterrupted) {
-  const auto noise = [](const Cube& c) { return c.level ? Colour::gray : (c.x ^ c.y ^ c.z) & 1 ? Colour::black : Colour::white; };
+  const auto noise = [](const Cube& c) {
+    return c.level ? Colour::gray : (c.x ^ c.y ^ c.z) & 1 ? Colour::black : Colour::white;
+  };
   for (int threads : {1, 2}) {
     int calls = 0;
     double last = 0;

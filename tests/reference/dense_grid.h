@@ -23,7 +23,8 @@ struct DenseGrid {
   int side() const { return 1 << depth; }
   std::size_t index(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(side()) + static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(side()) + static_cast<std::size_t>(x);
+               static_cast<std::size_t>(side()) +
+           static_cast<std::size_t>(x);
   }
   /// Outside the universe everything is white.
   bool at(std::int64_t x, std::int64_t y, std::int64_t z) const {

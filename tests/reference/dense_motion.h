@@ -51,21 +51,44 @@ inline Motion random_motion(int depth, std::mt19937& random) {
   Eigen::Matrix3d r = Eigen::Matrix3d::Identity();
   const auto axis = [&] { return Eigen::Vector3d(pick(-2, 2), pick(-2, 2), pick(-2, 2) * 2 + 1); };
   switch (pick(0, 7)) {
-    case 0: break;
-    case 1: r = Motion::rotation(Eigen::Vector3d::Unit(pick(0, 2)), pick(-3, 3) * M_PI / 2).rotation(); break;
-    case 2: r = Motion::rotation(Eigen::Vector3d::Unit(pick(0, 2)), M_PI / 4).rotation(); break;
-    case 3: r << 0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1; break;
-    case 4: r << 1, -2, 2, 2, -1, -2, 2, 2, 1; r /= 3; break;
-    case 5: r = Motion::rotation(Eigen::Vector3d(1, 1, 1), pick(-2, 2) * M_PI * 2 / 3).rotation(); break;
-    case 6: r = Motion::rotation(axis(), real(-1e-3, 1e-3)).rotation(); break;
-    default: r = Motion::rotation(axis(), real(-3, 3)).rotation(); break;
+    case 0:
+      break;
+    case 1:
+      r = Motion::rotation(Eigen::Vector3d::Unit(pick(0, 2)), pick(-3, 3) * M_PI / 2).rotation();
+      break;
+    case 2:
+      r = Motion::rotation(Eigen::Vector3d::Unit(pick(0, 2)), M_PI / 4).rotation();
+      break;
+    case 3:
+      r << 0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1;
+      break;
+    case 4:
+      r << 1, -2, 2, 2, -1, -2, 2, 2, 1;
+      r /= 3;
+      break;
+    case 5:
+      r = Motion::rotation(Eigen::Vector3d(1, 1, 1), pick(-2, 2) * M_PI * 2 / 3).rotation();
+      break;
+    case 6:
+      r = Motion::rotation(axis(), real(-1e-3, 1e-3)).rotation();
+      break;
+    default:
+      r = Motion::rotation(axis(), real(-3, 3)).rotation();
+      break;
   }
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
   switch (pick(0, 3)) {
-    case 0: break;
-    case 1: t = Eigen::Vector3d(pick(-2, 2), pick(-2, 2), pick(-2, 2)); break;
-    case 2: t = Eigen::Vector3d(pick(-4, 4), pick(-4, 4), pick(-4, 4)) / 2; break;
-    default: t = Eigen::Vector3d(real(-1, 1), real(-1, 1), real(-1, 1)) * n / 4; break;
+    case 0:
+      break;
+    case 1:
+      t = Eigen::Vector3d(pick(-2, 2), pick(-2, 2), pick(-2, 2));
+      break;
+    case 2:
+      t = Eigen::Vector3d(pick(-4, 4), pick(-4, 4), pick(-4, 4)) / 2;
+      break;
+    default:
+      t = Eigen::Vector3d(real(-1, 1), real(-1, 1), real(-1, 1)) * n / 4;
+      break;
   }
   const Motion motion(r, t);
   return pick(0, 3) ? motion.about(Eigen::Vector3d::Constant(n / 2)) : motion;
