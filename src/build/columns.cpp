@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include "blackleaf/error.h"
 #include "octree/brick.h"
@@ -139,7 +140,7 @@ class TriangleScan {
 struct Windings {
   struct Place {
     std::int64_t z = std::numeric_limits<std::int64_t>::max(), y = 0, x = 0;
-    friend auto operator<=>(const Place&, const Place&) = default;
+    friend bool operator<(const Place& a, const Place& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
   };
   std::array<std::uint64_t, 8> columns{};
   std::array<Place, 8> first{};  // where the first column of the kind became one

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -131,6 +132,7 @@ class TouchedProducer {
   }
 
   Colour classify(Task& task, const Cube& cube) const {
+    assert(cube.level >= 2);
     if (!task.inside.is_gray() && (task.inside.is_black() || task.triangles.empty())) return task.inside.colour();
     if (cube.level > 2) {
       task.children.resize(task.triangles.size());

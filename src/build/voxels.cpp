@@ -1,8 +1,8 @@
 #include "blackleaf/voxels.h"
 
 #include <algorithm>
-#include <memory>
 #include <string>
+#include <vector>
 
 #include "blackleaf/error.h"
 #include "octree/brick.h"
@@ -24,18 +24,15 @@ std::string point(const std::array<std::int64_t, 3>& p) {
 // first-level cache while its bricks are put together, and each cache line of the volume is read once.
 constexpr int kBlockLevel = 6;
 
-// The bricks of one block, x fastest.
-struct Block {
-  std::array<std::uint64_t, std::size_t{1} << 3 * (kBlockLevel - 2)> bricks;
-};
+constexpr std::size_t kBlockBricks = std::size_t{1} << 3 * (kBlockLevel - 2);
 
 template <class T, class Inside>
 class VoxelProducer {
  public:
   // A node of the block level owns its bricks; those below it look into them.
   struct Task {
-    std::unique_ptr<Block> owner;
-    const Block* block = nullptr;
+    std::vector<std::uint64_t> own;         // the bricks of a block, x fastest
+    const std::uint64_t* bricks = nullptr;  // of the block that the node is or lies in
   };
 
   VoxelProducer(const VolumeView<T>& volume, const std::array<std::int32_t, 3>& corner, int depth, const Inside& inside)
@@ -58,16 +55,16 @@ class VoxelProducer {
         cube.z + side <= low_[2] || cube.z >= high_[2])
       return Colour::white;
     if (cube.level > block_level_) return Colour::gray;
-    task.owner = std::make_unique<Block>();
-    task.block = task.owner.get();
-    return read(cube, *task.owner);
+    task.own.resize(kBlockBricks);
+    task.bricks = task.own.data();
+    return read(cube, task.own);
   }
 
-  Task child(const Task& task, const Cube&, int) const { return {nullptr, task.block}; }
+  Task child(const Task& task, const Cube&, int) const { return {{}, task.bricks}; }
 
   std::uint64_t brick(const Task& task, const Cube& cube) const {
     const int mask = (1 << block_level_) - 1;
-    return task.block->bricks[index((cube.x & mask) >> 2, (cube.y & mask) >> 2, (cube.z & mask) >> 2)];
+    return task.bricks[index((cube.x & mask) >> 2, (cube.y & mask) >> 2, (cube.z & mask) >> 2)];
   }
 
  private:
@@ -83,7 +80,7 @@ class VoxelProducer {
   }
 
   // Fills the block's bricks; the result is its colour.
-  Colour read(const Cube& cube, Block& block) const {
+  Colour read(const Cube& cube, std::vector<std::uint64_t>& block) const {
     const int bricks = 1 << (block_level_ - 2);
     const std::int64_t x0 = std::max<std::int64_t>(cube.x, low_[0]);
     const std::int64_t x1 = std::min<std::int64_t>(std::int64_t{cube.x} + cube.side(), high_[0]);
@@ -114,7 +111,7 @@ class VoxelProducer {
             brick = ~std::uint64_t{0};
           else if ((any_row >> shift & 0xF) != 0)
             brick = gather(rows, shift);
-          block.bricks[index(bx, by, bz)] = brick;
+          block[index(bx, by, bz)] = brick;
           any |= brick;
           all &= brick;
         }
