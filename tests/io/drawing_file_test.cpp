@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <regex>
 
 #include "blackleaf/implicit.h"
 #include "file/temporary_folder.h"
@@ -25,22 +24,26 @@ LineDrawing some_drawing() {
 // The points of all polylines, in millimetres.
 std::vector<std::array<double, 4>> polylines(const std::string& svg) {
   std::vector<std::array<double, 4>> result;
-  const std::regex pattern("<polyline points=\"([-0-9.]+),([-0-9.]+) ([-0-9.]+),([-0-9.]+)\"/>");
-  for (std::sregex_iterator it(svg.begin(), svg.end(), pattern), end; it != end; ++it) {
+  for (std::size_t at = 0; (at = svg.find("<polyline ", at)) != std::string::npos; ++at) {
     std::array<double, 4> line{};
-    for (std::size_t i = 0; i < 4; ++i) line[i] = std::strtod((*it)[i + 1].str().c_str(), nullptr);
+    EXPECT_EQ(
+        std::sscanf(svg.c_str() + at, "<polyline points=\"%lf,%lf %lf,%lf\"/>", &line[0], &line[1], &line[2], &line[3]),
+        4);
     result.push_back(line);
   }
   return result;
 }
 
 std::array<double, 2> page_of(const std::string& svg) {
-  std::smatch match;
-  EXPECT_TRUE(std::regex_search(
-      svg, match, std::regex("width=\"([0-9.]+)mm\" height=\"([0-9.]+)mm\" viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"")));
-  EXPECT_EQ(match[1], match[3]);
-  EXPECT_EQ(match[2], match[4]);
-  return {std::stod(match[1]), std::stod(match[2])};
+  std::array<double, 4> sides{};
+  const std::size_t at = svg.find("width=\"");
+  EXPECT_NE(at, std::string::npos);
+  EXPECT_EQ(std::sscanf(svg.c_str() + at, "width=\"%lfmm\" height=\"%lfmm\" viewBox=\"0 0 %lf %lf\">", &sides[0],
+                        &sides[1], &sides[2], &sides[3]),
+            4);
+  EXPECT_EQ(sides[0], sides[2]);
+  EXPECT_EQ(sides[1], sides[3]);
+  return {sides[0], sides[1]};
 }
 
 TEST(DrawingFile, JsonIsAsTheContractSays) {
