@@ -46,7 +46,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 
   std::string make_option_desc(const CLI::Option* option) const override {
-    const std::string words = option->get_description();
+    const std::string& words = option->get_description();
     std::string text;
     std::size_t width = 0;
     for (std::size_t at = 0; at < words.size();) {
