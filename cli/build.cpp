@@ -144,9 +144,10 @@ Octree from_volume(Session& session, const BuildOptions& o, const std::optional<
   if (o.centre) facts["centre"] = true;
   if (like) facts["like"] = base_name(*o.like);
   // The volume is built while it is read, so this is one stage.
-  const Octree octree = session.stage("build", [&](const Work& work) { return read_volume(o.input, options, work); });
+  Octree octree = session.stage("build", [&](const Work& work) { return read_volume(o.input, options, work); });
   facts["depth"] = octree.depth();
-  return like ? placed_in(octree, *like, o.input, *o.like) : octree;
+  if (like) octree = placed_in(octree, *like, o.input, *o.like);
+  return octree;
 }
 
 Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
@@ -158,7 +159,7 @@ Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Oc
                   {o.range.has_value(), "--range"},
                   {o.label.has_value(), "--label"},
                   {o.centre, "--centre"}});
-  const Octree octree = session.stage("build", [&](const Work&) { return read_runs(o.input); });
+  Octree octree = session.stage("build", [&](const Work&) { return read_runs(o.input); });
   facts["depth"] = octree.depth();
   if (!like) return octree;
   facts["like"] = base_name(*o.like);

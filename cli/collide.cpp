@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 #include "blackleaf/contact.h"
 #include "blackleaf/error.h"
@@ -69,18 +70,19 @@ int run_collide(Session& session) {
   session.set_example("blackleaf collide room.octree robot.octree --rotate 0,0,1:45 --about centroid");
   if (!session.parse()) return kDone;
 
-  const auto [a, b] = read_pair(session, first_name, second_name);
+  const std::pair<Octree, Octree> pair = read_pair(session, first_name, second_name);
+  const Octree& a = pair.first;
+  const Octree& b = pair.second;
   Answer answer;
   if (exact) {
     const Motion motion = motion_options.motion(b);
-    answer.interferes = session.stage(
-        "collide", [&, &first = a, &second = b](const Work&) { return interferes_exactly(first, second, motion); });
+    answer.interferes = session.stage("collide", [&](const Work&) { return interferes_exactly(a, b, motion); });
   } else {
     const Octree target = motion_options.given() ? moved(session, b, motion_options.motion(b), second_name) : b;
-    session.stage("collide", [&, &first = a](const Work&) {
-      answer.overlap = overlap_volume(first, target);
+    session.stage("collide", [&](const Work&) {
+      answer.overlap = overlap_volume(a, target);
       answer.interferes = *answer.overlap > 0;
-      if (!answer.interferes) answer.apart = distance(first, target);
+      if (!answer.interferes) answer.apart = distance(a, target);
     });
   }
   if (session.json())

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <utility>
 
 #include "blackleaf/error.h"
 #include "blackleaf/set_operations.h"
@@ -29,7 +30,9 @@ int run_combine(Session& session) {
                 fmt::format("unknown operation '{}' between '{}' and '{}'", operation, first_name, second_name),
                 "use and, or, minus or xor");
   check_octree_output(session, output);
-  const auto [a, b] = read_pair(session, first_name, second_name);
+  const std::pair<Octree, Octree> pair = read_pair(session, first_name, second_name);
+  const Octree& a = pair.first;
+  const Octree& b = pair.second;
   const Octree result = session.stage("combine", [&](const Work& work) { return chosen->second(a, b, work); });
   const std::uint64_t bytes =
       write_octree(session, result, output, first_name, {{"operation", operation}, {"with", base_name(second_name)}});
