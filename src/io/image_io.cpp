@@ -4,6 +4,7 @@
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 #include <nifti1_io.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <cctype>
@@ -157,10 +158,40 @@ std::size_t bytes_of(Component component) {
   }
 }
 
+// Another name for a single-file NIfTI image, in a folder of its own. The NIfTI library looks for a file's data by its
+// name without suffix, so beside scan.nii it reads scan.nii.gz's header with scan.nii's voxels.
+class LonelyName {
+ public:
+  explicit LonelyName(const fs::path& path) {
+    const std::string suffix = image_suffix(path);
+    if (suffix != ".nii" && suffix != ".nii.gz") return;
+    std::string pattern = (fs::temp_directory_path() / "blackleaf-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr)
+      throw Error(ErrorCode::io, pattern + ": cannot make a temporary folder", "set TMPDIR to a folder you can write to");
+    folder_ = pattern;
+    link_ = folder_ / ("image" + suffix);
+    fs::create_symlink(fs::absolute(path), link_);
+  }
+  ~LonelyName() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  }
+  LonelyName(const LonelyName&) = delete;
+  LonelyName& operator=(const LonelyName&) = delete;
+
+  fs::path of(const fs::path& path) const { return folder_.empty() ? path : link_; }
+
+ private:
+  fs::path folder_, link_;
+};
+
 struct ImageReader::Itk {
+  Itk(const fs::path& path, ImageFormat image_format) : name(path.string()), format(image_format), lonely(path) {}
+
   itk::ImageIOBase::Pointer io;
   std::string name;
   ImageFormat format;
+  LonelyName lonely;
 
   [[noreturn]] void fail(const std::exception& exception) const {
     throw Error(ErrorCode::bad_input,
@@ -170,14 +201,15 @@ struct ImageReader::Itk {
 };
 
 ImageReader::ImageReader(const fs::path& path, ImageFormat format)
-    : itk_(std::make_unique<Itk>(Itk{nullptr, path.string(), format})) {
+    : itk_(std::make_unique<Itk>(path, format)) {
   const Quiet quiet;
   try {
+    const std::string name = itk_->lonely.of(path).string();
     itk_->io = make(format);
-    if (!itk_->io->CanReadFile(path.c_str()))
+    if (!itk_->io->CanReadFile(name.c_str()))
       throw Error(ErrorCode::bad_input, fmt::format("{}: is not a {} file", path.string(), format_name(format)),
                   "its contents are not what its name says; check where it comes from");
-    itk_->io->SetFileName(path.string());
+    itk_->io->SetFileName(name);
     itk_->io->ReadImageInformation();
   } catch (const Error&) {
     throw;

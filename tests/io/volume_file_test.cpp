@@ -86,6 +86,16 @@ TEST(VolumeFile, CroppedVolumesLieInTheSamePlace) {
 
 // The frame speaks of corners, files of centres; a volume placed elsewhere in the universe stays where it is in the
 // world.
+TEST(VolumeFile, CompressedNiftiBesideAnotherOfTheSameName) {
+  // The NIfTI library, left to itself, takes a.nii's voxels for a.nii.gz's.
+  const test::TemporaryFolder folder;
+  const Octree one = ball(4, {8, 8, 8}, 5), other = box(4, {1, 2, 3}, {9, 8, 7});
+  write_volume(one, folder / "a.nii");
+  write_volume(other, folder / "a.nii.gz");
+  EXPECT_TRUE(read_volume(folder / "a.nii") == one);
+  EXPECT_TRUE(read_volume(folder / "a.nii.gz") == other);
+}
+
 TEST(VolumeFile, FramesOfPlacedVolumes) {
   const test::TemporaryFolder folder;
   const std::string geometry =
