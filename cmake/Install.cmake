@@ -10,7 +10,6 @@ target_link_libraries(blackleaf INTERFACE
 install(TARGETS blackleaf blackleaf_octree blackleaf_build blackleaf_motion blackleaf_contact blackleaf_draw blackleaf_file
   EXPORT blackleafTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS blackleaf_io EXPORT blackleafIoTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS blackleaf_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/blackleaf DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/blackleaf)
 

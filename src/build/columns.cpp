@@ -9,7 +9,7 @@
 
 #include "blackleaf/error.h"
 #include "octree/brick.h"
-#include "parallel.h"
+#include "octree/parallel.h"
 
 namespace blackleaf::detail {
 namespace {

@@ -5,16 +5,14 @@
 // two explicit bricks the curve does not change colour: consecutive bricks share a face, so a change between two plain
 // bricks would make the black one explicit. The sorted explicit bricks, each with the colour of the gap behind it, are
 // thus the whole solid; a node without explicit bricks has the colour of the gap that it lies in.
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <limits>
 
 #include "blackleaf/curve.h"
 #include "blackleaf/mesh.h"
 #include "columns.h"
+#include "octree/parallel.h"
 #include "octree/produce.h"
-#include "parallel.h"
 #include "touched.h"
 
 namespace blackleaf {
@@ -58,12 +56,7 @@ class Explicit {
       bricks_.insert(bricks_.end(), part.begin(), part.end());
       part = {};
     }
-    if (work.threads == 1) {
-      std::sort(bricks_.begin(), bricks_.end());
-    } else {
-      oneapi::tbb::task_arena arena(work.threads > 0 ? work.threads : oneapi::tbb::task_arena::automatic);
-      arena.execute([&] { oneapi::tbb::parallel_sort(bricks_.begin(), bricks_.end()); });
-    }
+    detail::sort(bricks_, work);
     bricks_.erase(std::unique(bricks_.begin(), bricks_.end()), bricks_.end());
     gaps_.resize(bricks_.size() + 1);
     gaps_[0] = is_black(0);

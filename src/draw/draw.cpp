@@ -1,7 +1,3 @@
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -9,7 +5,7 @@
 #include "blackleaf/drawing.h"
 #include "feature_edges.h"
 #include "octree/corner_walk.h"
-#include "octree/produce.h"
+#include "octree/parallel.h"
 #include "strokes.h"
 #include "visibility.h"
 
@@ -91,7 +87,7 @@ class Drawer {
 };
 
 // The pieces of all tasks, each class sorted. Their order after sorting does not depend on how they were found.
-Pieces gather(std::vector<Task>& tasks, bool parallel) {
+Pieces gather(std::vector<Task>& tasks, const Work& work) {
   Pieces all;
   for (std::size_t k = 0; k < all.size(); ++k) {
     std::size_t count = 0;
@@ -101,10 +97,7 @@ Pieces gather(std::vector<Task>& tasks, bool parallel) {
       all[k].insert(all[k].end(), task.pieces[k].begin(), task.pieces[k].end());
       std::vector<Piece>().swap(task.pieces[k]);
     }
-    if (parallel)
-      oneapi::tbb::parallel_sort(all[k].begin(), all[k].end());
-    else
-      std::sort(all[k].begin(), all[k].end());
+    detail::sort(all[k], work);
   }
   return all;
 }
@@ -115,23 +108,8 @@ LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   const detail::Direction& d = view.direction();
   const Families families = {EdgeFamily(0, d), EdgeFamily(1, d), EdgeFamily(2, d)};
   std::vector<Task> tasks = cut(octree);
-  detail::Progress progress(work, tasks.size());
-  Pieces pieces;
-  const auto run = [&](Task& task) {
-    Drawer(octree, families).run(task);
-    progress.step();
-  };
-  const int threads = work.threads > 0 ? work.threads : oneapi::tbb::this_task_arena::max_concurrency();
-  if (threads == 1) {
-    for (Task& task : tasks) run(task);
-    pieces = gather(tasks, false);
-  } else {
-    oneapi::tbb::task_arena arena(threads);
-    arena.execute([&] {
-      oneapi::tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) { run(tasks[i]); });
-      pieces = gather(tasks, true);
-    });
-  }
+  detail::for_each_index(tasks.size(), work, [&](std::size_t i) { Drawer(octree, families).run(tasks[i]); });
+  const Pieces pieces = gather(tasks, work);
   LineDrawing drawing{view, {}};
   std::array<bool, 3> done{};  // two families can share a line class
   for (const EdgeFamily& family : families) {

@@ -86,7 +86,7 @@ TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving)
   if (sides.empty()) return target;
   if (leaving == Leaving::error)
     throw Error(ErrorCode::out_of_universe, "the moved solid leaves the universe: " + sides,
-                "move it less, or ask to clip it or to grow the universe");
+                "move it less, clip it (--clip) or grow the universe (--grow)");
   while (true) {
     bool fits = true;
     std::array<bool, 3> downward{};

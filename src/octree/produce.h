@@ -18,38 +18,14 @@
 // joined in curve order, as MHF92 (section 4) joins its processors' tuples. The result does not depend on the cut.
 #pragma once
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <array>
-#include <atomic>
-#include <mutex>
 #include <vector>
 
-#include "blackleaf/error.h"
 #include "blackleaf/work.h"
 #include "node_arrays.h"
+#include "parallel.h"
 
 namespace blackleaf::detail {
-
-/// Reports progress from one thread at a time and turns a refusal into Error(cancelled).
-class Progress {
- public:
-  explicit Progress(const Work& work, std::size_t steps) : work_(work), steps_(steps) {}
-  void step() {
-    const std::size_t done = ++done_;
-    if (!work_.progress) return;
-    const std::lock_guard lock(mutex_);
-    if (!work_.progress(static_cast<double>(done) / static_cast<double>(steps_)))
-      throw Error(ErrorCode::cancelled, "interrupted");
-  }
-
- private:
-  const Work& work_;
-  std::size_t steps_;
-  std::atomic<std::size_t> done_{0};
-  std::mutex mutex_;
-};
 
 template <class Producer>
 class Production {
@@ -68,23 +44,12 @@ class Production {
       if (depth_ == 1) top = byte(top);
     } else {
       outline(producer_.root(), root, 0);
-      Progress progress(work_, stretches_.size());
-      const int threads = work_.threads > 0 ? work_.threads : oneapi::tbb::this_task_arena::max_concurrency();
-      if (threads == 1) {
-        for (Stretch& s : stretches_) {
-          s.result = serial(s.task, s.cube, s.table, arrays);
-          progress.step();
-        }
+      if (thread_count(work_) == 1) {
+        // No need for arrays of their own: one thread walks the curve.
+        for_each_index(stretches_.size(), work_, [&](std::size_t i) { produce(stretches_[i], arrays); });
       } else {
         std::vector<NodeArrays> own(stretches_.size());
-        oneapi::tbb::task_arena arena(threads);
-        arena.execute([&] {
-          oneapi::tbb::parallel_for(std::size_t{0}, stretches_.size(), [&](std::size_t i) {
-            Stretch& s = stretches_[i];
-            s.result = serial(s.task, s.cube, s.table, own[i]);
-            progress.step();
-          });
-        });
+        for_each_index(own.size(), work_, [&](std::size_t i) { produce(stretches_[i], own[i]); });
         for (std::size_t i = 0; i < own.size(); ++i)
           stretches_[i].result = arrays.append(own[i], stretches_[i].result, stretches_[i].cube.level);
       }
@@ -104,6 +69,10 @@ class Production {
     std::uint8_t table;
     Subtree result;
   };
+
+  void produce(Stretch& stretch, NodeArrays& arrays) const {
+    stretch.result = serial(stretch.task, stretch.cube, stretch.table, arrays);
+  }
 
   static Subtree byte(Subtree top) {
     if (top.colour != Colour::gray) return top;

@@ -82,9 +82,10 @@ TEST(Translate, LeavingSaysByHowMuchAndWhere) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::out_of_universe);
-    EXPECT_EQ(std::string(error.what()),
-              "the moved solid leaves the universe: 3 voxels below x = 0, 7 voxels beyond z = 16; move it less, or ask "
-              "to clip it or to grow the universe");
+    EXPECT_EQ(
+        std::string(error.what()),
+        "the moved solid leaves the universe: 3 voxels below x = 0, 7 voxels beyond z = 16; move it less, clip it "
+        "(--clip) or grow the universe (--grow)");
   }
   EXPECT_TRUE(translate(octree, {std::numeric_limits<std::int64_t>::max(), 0, 0}, Leaving::clip).is_empty());
   EXPECT_THROW(translate(octree, {std::numeric_limits<std::int64_t>::min(), 0, 0}, Leaving::grow), Error);
