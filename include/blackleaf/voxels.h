@@ -36,8 +36,8 @@ struct ValueRange {
 
 /// The octree of the voxels whose value satisfies is_inside; voxels outside the volume are white. Every value is read
 /// once; blocks of one colour are never built. The frame is that of the universe. T: (u)int8, (u)int16, (u)int32,
-/// float, double. is_inside is called from many threads. Throws Error(bad_input) for a volume without voxels or one that
-/// does not fit the universe, Error(bad_argument) for a depth outside 0..20. O(voxels).
+/// float, double. is_inside is called from many threads. Throws Error(bad_input) for a volume without voxels or one
+/// that does not fit the universe, Error(bad_argument) for a depth outside 0..20. O(voxels).
 template <class T>
 Octree octree_from_voxels(const VolumeView<T>& volume, ValueRange<T> inside, VolumePlacement placement = {},
                           Frame frame = {}, const Work& work = {});

@@ -167,7 +167,8 @@ class LonelyName {
     if (suffix != ".nii" && suffix != ".nii.gz") return;
     std::string pattern = (fs::temp_directory_path() / "blackleaf-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr)
-      throw Error(ErrorCode::io, pattern + ": cannot make a temporary folder", "set TMPDIR to a folder you can write to");
+      throw Error(ErrorCode::io, pattern + ": cannot make a temporary folder",
+                  "set TMPDIR to a folder you can write to");
     folder_ = pattern;
     link_ = folder_ / ("image" + suffix);
     fs::create_symlink(fs::absolute(path), link_);
@@ -200,8 +201,7 @@ struct ImageReader::Itk {
   }
 };
 
-ImageReader::ImageReader(const fs::path& path, ImageFormat format)
-    : itk_(std::make_unique<Itk>(path, format)) {
+ImageReader::ImageReader(const fs::path& path, ImageFormat format) : itk_(std::make_unique<Itk>(path, format)) {
   const Quiet quiet;
   try {
     const std::string name = itk_->lonely.of(path).string();

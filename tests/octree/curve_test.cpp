@@ -44,6 +44,22 @@ TEST(Curve, ConsecutiveVoxelsShareAFaceAndNumbersInvert) {
   }
 }
 
+TEST(Curve, WalkingVisitsTheStretchInOrder) {
+  std::mt19937_64 random(4);
+  for (int trial = 0; trial < 300; ++trial) {
+    const int order = 1 + trial % 20;
+    const std::uint64_t all = std::uint64_t{1} << (3 * order);
+    const std::uint64_t first = trial < 20 ? 0 : random() % all;
+    const std::uint64_t last = std::min(all, first + random() % 700);
+    std::uint64_t next = first;
+    curve::walk(order, first, last, [&](const curve::Voxel& v) { ASSERT_EQ(v, curve::voxel(order, next++)); });
+    EXPECT_EQ(next, last);
+  }
+  int visits = 0;
+  curve::walk(5, 0, 32768, [&](const curve::Voxel&) { ++visits; });
+  EXPECT_EQ(visits, 32768);
+}
+
 TEST(Curve, InverseAtDepthTwenty) {
   std::mt19937_64 random(1992);
   for (int order : {1, 7, 13, 19, 20})
