@@ -7,8 +7,7 @@
 #include "blackleaf/move.h"
 #include "extent.h"
 #include "octree/brick.h"
-#include "octree/produce.h"
-#include "source_window.h"
+#include "window_producer.h"
 
 namespace blackleaf {
 namespace {
@@ -19,72 +18,45 @@ using detail::SourceWindow;
 // Source coordinates are in units of 2^-39 voxels, twice as fine as the motion's grid, because centres are halves.
 constexpr int kBits = FixedMotion::kFractionBits + 1;
 
-struct MoveProducer {
-  struct Task {
-    SourceWindow window;
-    bool above_source = false;  // the target node is larger than the whole source
-  };
-
-  MoveProducer(const Octree& octree, const FixedMotion& fixed, int target_depth)
-      : source(detail::brick_level_root(octree)), motion(fixed), depth(target_depth) {
+class MovedBack {
+ public:
+  explicit MovedBack(const FixedMotion& motion) : motion_(motion) {
     for (std::size_t i = 0; i < 3; ++i)
-      for (const std::int64_t entry : motion.inverse_rotation[i]) reach[i] += entry < 0 ? -entry : entry;
-  }
-
-  // Twice a target point (twice: centres become odd integers), moved back. The bound of motion.h keeps it in 63 bits.
-  std::array<std::int64_t, 3> moved_back(std::int64_t x2, std::int64_t y2, std::int64_t z2) const {
-    std::array<std::int64_t, 3> q;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto& a = motion.inverse_rotation[i];
-      q[i] = a[0] * x2 + a[1] * y2 + a[2] * z2 + 2 * motion.inverse_translation[i];
-    }
-    return q;
+      for (const std::int64_t entry : motion.inverse_rotation[i]) reach_[i] += entry < 0 ? -entry : entry;
   }
 
   // The cells of the cube's own level whose closed cubes may hold one of its voxel centres, moved back.
   CellRange cells(const Cube& cube) const {
-    const auto centre = moved_back(2 * std::int64_t{cube.x} + cube.side(), 2 * std::int64_t{cube.y} + cube.side(),
-                                   2 * std::int64_t{cube.z} + cube.side());
+    const auto centre = source_point(2 * std::int64_t{cube.x} + cube.side(), 2 * std::int64_t{cube.y} + cube.side(),
+                                     2 * std::int64_t{cube.z} + cube.side());
     CellRange range;
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::int64_t half = reach[i] * (cube.side() - 1);
+      const std::int64_t half = reach_[i] * (cube.side() - 1);
       range.low[i] = (centre[i] - half - 1) >> (kBits + cube.level);  // -1: on a cell's lower face both sides count
       range.high[i] = (centre[i] + half) >> (kBits + cube.level);
     }
     return range;
   }
-  Task at(const Cube& cube) const {
-    if (cube.level > source.level()) return {{}, true};
-    return {SourceWindow::of_root(source, cells(cube)), false};
-  }
 
-  Task root() const { return at({0, 0, 0, depth < 2 ? 2 : depth}); }
-  Colour classify(Task& task, const Cube& cube) const {
-    if (!task.above_source) return task.window.colour();
-    const CellRange range = cells(cube);  // at this level the whole source is in cell (0,0,0)
-    for (std::size_t i = 0; i < 3; ++i)
-      if (range.low[i] > 0 || range.high[i] < 0) return Colour::white;
-    return Colour::gray;
-  }
-  Task child(const Task& task, const Cube& cube, int) const {
-    if (task.above_source) return at(cube);
-    return {task.window.narrowed(cells(cube)), false};
-  }
-
-  std::uint64_t brick(const Task& task, const Cube& cube) const {
-    const auto bricks = task.window.bricks();
-    const auto& low = task.window.low();
+  std::uint64_t brick(const SourceWindow& window, const Cube& cube) const {
+    const auto bricks = window.bricks();
     const auto black = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      const auto u = static_cast<unsigned>(x - 4 * low[0]), v = static_cast<unsigned>(y - 4 * low[1]),
-                 w = static_cast<unsigned>(z - 4 * low[2]);
+      const auto u = static_cast<unsigned>(x), v = static_cast<unsigned>(y), w = static_cast<unsigned>(z);
       return (bricks[(u >> 2) + 3 * (v >> 2) + 9 * (w >> 2)] >> detail::brick_bit(u & 3, v & 3, w & 3) & 1) != 0;
     };
+    // Of the first voxel's centre, relative to the window's lowest cell; the others follow by adding columns of A.
+    auto first = source_point(2 * std::int64_t{cube.x} + 1, 2 * std::int64_t{cube.y} + 1, 2 * std::int64_t{cube.z} + 1);
+    for (std::size_t i = 0; i < 3; ++i) first[i] -= window.low()[i] * (std::int64_t{4} << kBits);
     constexpr std::int64_t kFraction = (std::int64_t{1} << kBits) - 1;
     std::uint64_t bits = 0;
     for (unsigned bit = 0; bit < 64; ++bit) {
-      const auto q = moved_back(2 * (cube.x + std::int64_t{detail::brick_x(bit)}) + 1,
-                                2 * (cube.y + std::int64_t{detail::brick_y(bit)}) + 1,
-                                2 * (cube.z + std::int64_t{detail::brick_z(bit)}) + 1);
+      const std::array<std::int64_t, 3> at = {2 * detail::brick_x(bit), 2 * detail::brick_y(bit),
+                                              2 * detail::brick_z(bit)};
+      std::array<std::int64_t, 3> q;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto& a = motion_.inverse_rotation[i];
+        q[i] = first[i] + a[0] * at[0] + a[1] * at[1] + a[2] * at[2];
+      }
       const std::int64_t x = q[0] >> kBits, y = q[1] >> kBits, z = q[2] >> kBits;
       bool inside = black(x, y, z);
       // Exactly on a lattice plane: the closed cubes on both sides hold the point.
@@ -98,10 +70,19 @@ struct MoveProducer {
     return bits;
   }
 
-  Node source;  // at brick level at least
-  FixedMotion motion;
-  int depth;
-  std::array<std::int64_t, 3> reach{};  // sum of |A_ij| over j: half the back-moved box per half side
+ private:
+  // Twice a target point (twice: centres become odd integers), moved back. The bound of motion.h keeps it in 63 bits.
+  std::array<std::int64_t, 3> source_point(std::int64_t x2, std::int64_t y2, std::int64_t z2) const {
+    std::array<std::int64_t, 3> q;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& a = motion_.inverse_rotation[i];
+      q[i] = a[0] * x2 + a[1] * y2 + a[2] * z2 + 2 * motion_.inverse_translation[i];
+    }
+    return q;
+  }
+
+  FixedMotion motion_;
+  std::array<std::int64_t, 3> reach_{};  // sum of |A_ij| over j: half the back-moved box per half side
 };
 
 }  // namespace
@@ -112,8 +93,8 @@ Octree move(const Octree& octree, const Motion& motion, Leaving leaving, const W
     return Octree(octree.depth(), Colour::white, octree.frame());
   const FixedMotion fixed(motion);
   const auto target = detail::target_universe(octree.depth(), detail::extent_of(octree, fixed), leaving);
-  return detail::produce(MoveProducer(octree, fixed.shifted(target.offset), target.depth), target.depth,
-                         detail::grown_frame(octree.frame(), target), work);
+  return detail::produce(detail::WindowProducer(MovedBack(fixed.shifted(target.offset)), octree, target.depth),
+                         target.depth, detail::grown_frame(octree.frame(), target), work);
 }
 
 }  // namespace blackleaf

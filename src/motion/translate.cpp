@@ -9,8 +9,7 @@
 #include "blackleaf/move.h"
 #include "extent.h"
 #include "octree/brick.h"
-#include "octree/produce.h"
-#include "source_window.h"
+#include "window_producer.h"
 
 namespace blackleaf {
 namespace {
@@ -42,13 +41,7 @@ std::uint64_t between(std::uint64_t low, std::uint64_t high, unsigned axis, unsi
   return result;
 }
 
-struct TranslateProducer {
-  struct Task {
-    SourceWindow window;
-    bool above_source = false;  // the target node is larger than the whole source
-  };
-
-  Node source;                       // at brick level at least
+struct Shift {
   std::array<std::int64_t, 3> by{};  // target = source + by
 
   CellRange cells(const Cube& cube) const {
@@ -60,38 +53,21 @@ struct TranslateProducer {
     }
     return range;
   }
-  Task at(const Cube& cube) const {
-    if (cube.level > source.level()) return {{}, true};
-    return {SourceWindow::of_root(source, cells(cube)), false};
-  }
 
-  int depth;
-  Task root() const { return at({0, 0, 0, depth < 2 ? 2 : depth}); }
-  Colour classify(Task& task, const Cube& cube) const {
-    if (!task.above_source) return task.window.colour();
-    const CellRange range = cells(cube);  // at this level the whole source is in cell (0,0,0)
-    for (std::size_t i = 0; i < 3; ++i)
-      if (range.low[i] > 0 || range.high[i] < 0) return Colour::white;
-    return Colour::gray;
-  }
-  Task child(const Task& task, const Cube& cube, int) const {
-    if (task.above_source) return at(cube);
-    return {task.window.narrowed(cells(cube)), false};
-  }
-  std::uint64_t brick(const Task& task, const Cube& cube) const {
+  std::uint64_t brick(const SourceWindow& window, const Cube& cube) const {
     const CellRange range = cells(cube);
-    const std::array<unsigned, 3> shift = {static_cast<unsigned>((cube.x - by[0]) & 3),
+    const std::array<unsigned, 3> start = {static_cast<unsigned>((cube.x - by[0]) & 3),
                                            static_cast<unsigned>((cube.y - by[1]) & 3),
                                            static_cast<unsigned>((cube.z - by[2]) & 3)};
     std::array<std::uint64_t, 8> bricks{};
     for (unsigned i = 0; i < 8; ++i)
-      bricks[i] = task.window
+      bricks[i] = window
                       .node(i & 1 ? range.high[0] : range.low[0], i & 2 ? range.high[1] : range.low[1],
                             i & 4 ? range.high[2] : range.low[2])
                       .brick();
     for (unsigned axis = 0; axis < 3; ++axis)
       for (unsigned i = 0; i < 8u >> (axis + 1); ++i)
-        bricks[i] = between(bricks[2 * i], bricks[2 * i + 1], axis, shift[axis]);
+        bricks[i] = between(bricks[2 * i], bricks[2 * i + 1], axis, start[axis]);
     return bricks[0];
   }
 };
@@ -113,9 +89,10 @@ Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Le
   }
   const auto target = detail::target_universe(octree.depth(), extent, leaving);
   if (far) return Octree(octree.depth(), Colour::white, octree.frame());
-  TranslateProducer producer{detail::brick_level_root(octree), {}, target.depth};
-  for (std::size_t i = 0; i < 3; ++i) producer.by[i] = by[i] + target.offset[i];
-  return detail::produce(producer, target.depth, detail::grown_frame(octree.frame(), target), work);
+  Shift shift;
+  for (std::size_t i = 0; i < 3; ++i) shift.by[i] = by[i] + target.offset[i];
+  return detail::produce(detail::WindowProducer(shift, octree, target.depth), target.depth,
+                         detail::grown_frame(octree.frame(), target), work);
 }
 
 }  // namespace blackleaf
