@@ -20,6 +20,8 @@ constexpr int kBits = FixedMotion::kFractionBits + 1;
 
 class MovedBack {
  public:
+  static constexpr int kWidth = 3;
+
   explicit MovedBack(const FixedMotion& motion) : motion_(motion) {
     for (std::size_t i = 0; i < 3; ++i)
       for (const std::int64_t entry : motion.inverse_rotation[i]) reach_[i] += entry < 0 ? -entry : entry;
@@ -38,7 +40,7 @@ class MovedBack {
     return range;
   }
 
-  std::uint64_t brick(const SourceWindow& window, const Cube& cube) const {
+  std::uint64_t brick(const SourceWindow<kWidth>& window, const Cube& cube) const {
     const auto bricks = window.bricks();
     const auto black = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
       const auto u = static_cast<unsigned>(x), v = static_cast<unsigned>(y), w = static_cast<unsigned>(z);

@@ -3,7 +3,7 @@
 // A target node of level k, moved back into the source, lies in a box that meets at most three cells of level k on
 // every axis: the box is less than sqrt(3) 2^k long, so with both ends closed it meets floor(sqrt(3)) + 2 = 3. The
 // window holds the source's nodes of level k for these cells; the window of a child is read off its parent's in at most
-// 27 steps, without a search from the root.
+// kWidth^3 steps, without a search from the root. An integer translation needs two cells an axis.
 #pragma once
 
 #include <array>
@@ -18,7 +18,11 @@ struct CellRange {
   std::array<std::int64_t, 3> low{}, high{};
 };
 
+/// kWidth: the most cells on an axis.
+template <int kWidth>
 class SourceWindow {
+  static constexpr std::size_t kCells = kWidth * kWidth * kWidth;
+
  public:
   /// The window on a whole source: its root and white cells around it.
   static SourceWindow of_root(const Node& root, const CellRange& cells) {
@@ -45,18 +49,19 @@ class SourceWindow {
 
   /// The node of a cell. Requires: the cell is in the window.
   const Node& node(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return nodes_[static_cast<std::size_t>((x - low_[0]) + 3 * (y - low_[1]) + 9 * (z - low_[2]))];
+    return nodes_[static_cast<std::size_t>((x - low_[0]) + kWidth * ((y - low_[1]) + kWidth * (z - low_[2])))];
   }
 
   const std::array<std::int64_t, 3>& low() const { return low_; }
 
-  /// The voxels of the window as bricks, indexed x + 3y + 9z from its lowest cell. Requires: a window of level 2.
-  std::array<std::uint64_t, 27> bricks() const {
-    std::array<std::uint64_t, 27> result{};
+  /// The voxels of the window as bricks, indexed x + kWidth (y + kWidth z) from its lowest cell. Requires: a window of
+  /// level 2.
+  std::array<std::uint64_t, kCells> bricks() const {
+    std::array<std::uint64_t, kCells> result{};
     for (std::int64_t z = 0; z < size_[2]; ++z)
       for (std::int64_t y = 0; y < size_[1]; ++y)
         for (std::int64_t x = 0; x < size_[0]; ++x) {
-          const auto i = static_cast<std::size_t>(x + 3 * y + 9 * z);
+          const auto i = static_cast<std::size_t>(x + kWidth * (y + kWidth * z));
           result[i] = nodes_[i].brick();
         }
     return result;
@@ -68,7 +73,7 @@ class SourceWindow {
     low_ = cells.low;
     for (std::size_t i = 0; i < 3; ++i) {
       size_[i] = cells.high[i] - cells.low[i] + 1;
-      assert(size_[i] >= 1 && size_[i] <= 3);
+      assert(size_[i] >= 1 && size_[i] <= kWidth);
     }
   }
 
@@ -82,12 +87,12 @@ class SourceWindow {
           black |= node.is_black();
           white |= node.is_white();
           gray |= node.is_gray();
-          nodes_[static_cast<std::size_t>(x + 3 * y + 9 * z)] = node;
+          nodes_[static_cast<std::size_t>(x + kWidth * (y + kWidth * z))] = node;
         }
     colour_ = gray || (black && white) ? Colour::gray : black ? Colour::black : Colour::white;
   }
 
-  std::array<Node, 27> nodes_;
+  std::array<Node, kCells> nodes_;
   std::array<std::int64_t, 3> low_{}, size_{};
   int level_ = 0;
   Colour colour_ = Colour::white;

@@ -42,6 +42,8 @@ std::uint64_t between(std::uint64_t low, std::uint64_t high, unsigned axis, unsi
 }
 
 struct Shift {
+  static constexpr int kWidth = 2;
+
   std::array<std::int64_t, 3> by{};  // target = source + by
 
   CellRange cells(const Cube& cube) const {
@@ -54,7 +56,7 @@ struct Shift {
     return range;
   }
 
-  std::uint64_t brick(const SourceWindow& window, const Cube& cube) const {
+  std::uint64_t brick(const SourceWindow<kWidth>& window, const Cube& cube) const {
     const CellRange range = cells(cube);
     const std::array<unsigned, 3> start = {static_cast<unsigned>((cube.x - by[0]) & 3),
                                            static_cast<unsigned>((cube.y - by[1]) & 3),

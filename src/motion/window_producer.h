@@ -7,13 +7,15 @@
 namespace blackleaf::detail {
 
 /// Map says where target nodes see the source:
+///   kWidth                                        the most source cells on an axis
 ///   CellRange cells(const Cube&) const            the source cells of the cube's own level that its voxels may depend
-///   on std::uint64_t brick(const SourceWindow&, const Cube&) const        the voxels of a level-2 node
+///   on std::uint64_t brick(const SourceWindow<kWidth>&, const Cube&) const the voxels of a level-2 node
 template <class Map>
 class WindowProducer {
  public:
+  using Window = SourceWindow<Map::kWidth>;
   struct Task {
-    SourceWindow window;
+    Window window;
     bool above_source = false;  // the target node is larger than the whole source
   };
 
@@ -40,7 +42,7 @@ class WindowProducer {
  private:
   Task at(const Cube& cube) const {
     if (cube.level > source_.level()) return {{}, true};
-    return {SourceWindow::of_root(source_, map_.cells(cube)), false};
+    return {Window::of_root(source_, map_.cells(cube)), false};
   }
 
   Map map_;
