@@ -124,7 +124,7 @@ std::string image_suffix(const fs::path& path) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return text;
   };
-  const std::string last = lower(path.extension().string());
+  std::string last = lower(path.extension().string());
   if (last != ".gz") return last;
   const std::string before = lower(path.stem().extension().string());
   return before == ".nii" || before == ".img" || before == ".nia" ? before + last : last;
