@@ -20,6 +20,12 @@ std::uint64_t row_bits(const T* values, int count, const Inside& inside) {
   return bits;
 }
 
+/// The same for 64 values.
+template <class T, class Inside>
+std::uint64_t word_bits(const T* values, const Inside& inside) {
+  return row_bits(values, 64, inside);
+}
+
 /// A closed range of values, prepared for row_bits(). NaN lies in none.
 #ifndef __SSE2__
 
@@ -92,6 +98,13 @@ std::uint64_t row_bits(const T* values, int count, const InRange<T>& inside) {
   for (; i + 16 <= count; i += 16) bits |= inside.sixteen(values + i) << i;
   for (; i < count; ++i) bits |= std::uint64_t{inside(values[i])} << i;
   return bits;
+}
+
+/// The same for 64 values.
+template <class T>
+std::uint64_t word_bits(const T* values, const InRange<T>& inside) {
+  return inside.sixteen(values) | inside.sixteen(values + 16) << 16 | inside.sixteen(values + 32) << 32 |
+         inside.sixteen(values + 48) << 48;
 }
 
 #endif

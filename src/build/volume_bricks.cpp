@@ -1,0 +1,113 @@
+#include "volume_bricks.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "octree/brick.h"
+
+namespace blackleaf::detail {
+namespace {
+
+constexpr std::uint32_t kAllBlack = 0xFFFF;
+
+// Bits 0, 4, 8, ... of a word as 16 bits.
+std::uint32_t every_fourth(std::uint64_t word) {
+  word &= 0x1111'1111'1111'1111;
+  word = (word | word >> 3) & 0x0303'0303'0303'0303;
+  word = (word | word >> 6) & 0x000F'000F'000F'000F;
+  word = (word | word >> 12) & 0x0000'00FF'0000'00FF;
+  return static_cast<std::uint32_t>((word | word >> 24) & 0xFFFF);
+}
+
+// Four voxels along x as bits of a brick.
+constexpr auto kFour = [] {
+  std::array<std::uint16_t, 16> four{};
+  for (unsigned bits = 0; bits < 16; ++bits) four[bits] = static_cast<std::uint16_t>((bits & 3) | (bits & 12) << 6);
+  return four;
+}();
+
+std::uint64_t gather(const VolumeBricks::Rows& rows, std::size_t group, unsigned shift) {
+  std::uint64_t brick = 0;
+  for (unsigned row = 0; row < 16; ++row)
+    brick |= std::uint64_t{kFour[rows[row][group] >> shift & 0xF]} << (kSpread[row & 3] << 1 | kSpread[row >> 2] << 2);
+  return brick;
+}
+
+}  // namespace
+
+VolumeBricks::VolumeBricks(const std::array<std::int64_t, 3>& low, const std::array<std::int64_t, 3>& high) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int bits = axis == 0 ? 6 : 2;
+    first_[axis] = low[axis] >> bits;
+    count_[axis] = ((high[axis] - 1) >> bits) + 1 - first_[axis];
+    if (axis > 0) skew_[axis] = first_[axis] & 15;
+  }
+  blocks_y_ = (skew_[1] + count_[1] + 15) >> 4;
+  const std::int64_t blocks_z = (skew_[2] + count_[2] + 15) >> 4;
+  groups_ = std::make_unique_for_overwrite<Group[]>(static_cast<std::size_t>(count_[0] * blocks_y_ * blocks_z) << 8);
+  gray_.resize(static_cast<std::size_t>(strips()));
+}
+
+void VolumeBricks::set(std::int64_t strip, std::int64_t group, std::int64_t count, const Rows& rows,
+                       std::vector<std::uint64_t>& gray, std::size_t begin) {
+  const std::int64_t y = strip % count_[1], z = strip / count_[1];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    std::uint64_t any = 0, all = ~std::uint64_t{0};
+    for (const auto& row : rows) {
+      any |= row[i];
+      all &= row[i];
+    }
+    Group result{all != 0 ? kAllBlack : 0, static_cast<std::uint32_t>(gray.size() - begin)};
+    if (any != all || all != (all != 0 ? ~std::uint64_t{0} : 0)) {
+      any |= any >> 1;
+      all &= all >> 1;
+      const std::uint32_t black = every_fourth(all & all >> 2), grays = every_fourth(any | any >> 2) & ~black;
+      result.colours = black | grays << 16;
+      for (std::uint32_t rest = grays; rest != 0; rest &= rest - 1)
+        gray.push_back(gather(rows, i, 4 * static_cast<unsigned>(std::countr_zero(rest))));
+    }
+    groups_[index(group - first_[0] + static_cast<std::int64_t>(i), y, z)] = result;
+  }
+}
+
+bool VolumeBricks::misses(const Cube& cube) const {
+  const std::int64_t side = cube.side();
+  const auto apart = [&](std::int64_t begin, std::size_t axis, int bits) {
+    return begin + side <= first_[axis] << bits || begin >= (first_[axis] + count_[axis]) << bits;
+  };
+  return apart(cube.x, 0, 6) || apart(cube.y, 1, 2) || apart(cube.z, 2, 2);
+}
+
+Colour VolumeBricks::colour(const Cube& cube) const {
+  if (misses(cube)) return Colour::white;
+  const std::int64_t bricks = std::int64_t{1} << (cube.level - 2);
+  const auto begin = [&](std::int64_t first, std::size_t axis) {
+    return std::max<std::int64_t>(first - first_[axis], 0);
+  };
+  const auto end = [&](std::int64_t first, std::size_t axis) {
+    return std::min(first + bricks - first_[axis], count_[axis]);
+  };
+  const std::int64_t y0 = begin(cube.y >> 2, 1), y1 = end(cube.y >> 2, 1);
+  const std::int64_t z0 = begin(cube.z >> 2, 2), z1 = end(cube.z >> 2, 2);
+  const std::uint32_t mask = (kAllBlack >> (16 - bricks)) << (cube.x >> 2 & 15);
+  // What lies outside counts as white. The groups of one z stand side by side.
+  std::uint32_t any = 0, all = y1 - y0 == bricks && z1 - z0 == bricks ? mask : 0;
+  for (std::int64_t z = z0; z < z1; ++z) {
+    const Group* group = &groups_[index((cube.x >> 6) - first_[0], y0, z)];
+    for (const Group* const last = group + (y1 - y0); group < last; ++group) {
+      any |= group->colours;
+      all &= group->colours;
+    }
+    if ((any & (mask | mask << 16)) != 0 && all != mask) return Colour::gray;
+  }
+  return all == mask ? Colour::black : (any & (mask | mask << 16)) == 0 ? Colour::white : Colour::gray;
+}
+
+std::uint64_t VolumeBricks::brick(const Cube& cube) const {
+  const std::int64_t y = (cube.y >> 2) - first_[1], z = (cube.z >> 2) - first_[2];
+  const Group& group = groups_[index((cube.x >> 6) - first_[0], y, z)];
+  const std::uint32_t before = (group.colours >> 16) & ((std::uint32_t{1} << (cube.x >> 2 & 15)) - 1);
+  return gray_[static_cast<std::size_t>(y + count_[1] * z)][group.first + static_cast<unsigned>(std::popcount(before))];
+}
+
+}  // namespace blackleaf::detail
