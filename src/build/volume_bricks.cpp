@@ -28,6 +28,7 @@ constexpr auto kFour = [] {
 
 std::uint64_t gather(const VolumeBricks::Rows& rows, std::size_t group, unsigned shift) {
   std::uint64_t brick = 0;
+#pragma GCC unroll 16
   for (unsigned row = 0; row < 16; ++row)
     brick |= std::uint64_t{kFour[rows[row][group] >> shift & 0xF]} << (kSpread[row & 3] << 1 | kSpread[row >> 2] << 2);
   return brick;
@@ -44,7 +45,9 @@ VolumeBricks::VolumeBricks(const std::array<std::int64_t, 3>& low, const std::ar
   }
   blocks_y_ = (skew_[1] + count_[1] + 15) >> 4;
   const std::int64_t blocks_z = (skew_[2] + count_[2] + 15) >> 4;
-  groups_ = std::make_unique_for_overwrite<Group[]>(static_cast<std::size_t>(count_[0] * blocks_y_ * blocks_z) << 8);
+  const std::size_t room = static_cast<std::size_t>(count_[0] * blocks_y_ * blocks_z) << 8;
+  colours_ = std::make_unique_for_overwrite<std::uint32_t[]>(room);
+  first_gray_ = std::make_unique_for_overwrite<std::uint32_t[]>(room);
   gray_.resize(static_cast<std::size_t>(strips()));
 }
 
@@ -53,20 +56,23 @@ void VolumeBricks::set(std::int64_t strip, std::int64_t group, std::int64_t coun
   const std::int64_t y = strip % count_[1], z = strip / count_[1];
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     std::uint64_t any = 0, all = ~std::uint64_t{0};
-    for (const auto& row : rows) {
-      any |= row[i];
-      all &= row[i];
+#pragma GCC unroll 16
+    for (std::size_t row = 0; row < 16; ++row) {
+      any |= rows[row][i];
+      all &= rows[row][i];
     }
-    Group result{all != 0 ? kAllBlack : 0, static_cast<std::uint32_t>(gray.size() - begin)};
-    if (any != all || all != (all != 0 ? ~std::uint64_t{0} : 0)) {
-      any |= any >> 1;
-      all &= all >> 1;
-      const std::uint32_t black = every_fourth(all & all >> 2), grays = every_fourth(any | any >> 2) & ~black;
-      result.colours = black | grays << 16;
-      for (std::uint32_t rest = grays; rest != 0; rest &= rest - 1)
-        gray.push_back(gather(rows, i, 4 * static_cast<unsigned>(std::countr_zero(rest))));
+    const std::size_t at = index(group - first_[0] + static_cast<std::int64_t>(i), y, z);
+    if (any == all && any + 1 <= 1) {  // one colour throughout
+      colours_[at] = any != 0 ? kAllBlack : 0;
+      continue;
     }
-    groups_[index(group - first_[0] + static_cast<std::int64_t>(i), y, z)] = result;
+    any |= any >> 1;
+    all &= all >> 1;
+    const std::uint32_t black = every_fourth(all & all >> 2), grays = every_fourth(any | any >> 2) & ~black;
+    colours_[at] = black | grays << 16;
+    first_gray_[at] = static_cast<std::uint32_t>(gray.size() - begin);
+    for (std::uint32_t rest = grays; rest != 0; rest &= rest - 1)
+      gray.push_back(gather(rows, i, 4 * static_cast<unsigned>(std::countr_zero(rest))));
   }
 }
 
@@ -92,22 +98,24 @@ Colour VolumeBricks::colour(const Cube& cube) const {
   const std::uint32_t mask = (kAllBlack >> (16 - bricks)) << (cube.x >> 2 & 15);
   // What lies outside counts as white. The groups of one z stand side by side.
   std::uint32_t any = 0, all = y1 - y0 == bricks && z1 - z0 == bricks ? mask : 0;
+  const std::uint32_t black_or_gray = mask | mask << 16;
   for (std::int64_t z = z0; z < z1; ++z) {
-    const Group* group = &groups_[index((cube.x >> 6) - first_[0], y0, z)];
-    for (const Group* const last = group + (y1 - y0); group < last; ++group) {
-      any |= group->colours;
-      all &= group->colours;
+    const std::uint32_t* const colours = &colours_[index((cube.x >> 6) - first_[0], y0, z)];
+    for (std::int64_t i = 0; i < y1 - y0; ++i) {
+      any |= colours[i];
+      all &= colours[i];
     }
-    if ((any & (mask | mask << 16)) != 0 && all != mask) return Colour::gray;
+    if ((any & black_or_gray) != 0 && all != mask) return Colour::gray;
   }
-  return all == mask ? Colour::black : (any & (mask | mask << 16)) == 0 ? Colour::white : Colour::gray;
+  return all == mask ? Colour::black : (any & black_or_gray) == 0 ? Colour::white : Colour::gray;
 }
 
 std::uint64_t VolumeBricks::brick(const Cube& cube) const {
   const std::int64_t y = (cube.y >> 2) - first_[1], z = (cube.z >> 2) - first_[2];
-  const Group& group = groups_[index((cube.x >> 6) - first_[0], y, z)];
-  const std::uint32_t before = (group.colours >> 16) & ((std::uint32_t{1} << (cube.x >> 2 & 15)) - 1);
-  return gray_[static_cast<std::size_t>(y + count_[1] * z)][group.first + static_cast<unsigned>(std::popcount(before))];
+  const std::size_t at = index((cube.x >> 6) - first_[0], y, z);
+  const std::uint32_t before = (colours_[at] >> 16) & ((std::uint32_t{1} << (cube.x >> 2 & 15)) - 1);
+  return gray_[static_cast<std::size_t>(y + count_[1] * z)]
+              [first_gray_[at] + static_cast<unsigned>(std::popcount(before))];
 }
 
 }  // namespace blackleaf::detail

@@ -51,12 +51,6 @@ class VolumeBricks {
   std::uint64_t brick(const Cube& cube) const;
 
  private:
-  // Colours are told apart by OR and AND over many groups at once, so they are one number.
-  struct Group {
-    std::uint32_t colours;  // bit i: brick i is black; bit 16 + i: it is gray
-    std::uint32_t first;    // index of the first gray brick's bits in the strip
-  };
-
   // The group of brick row (y, z), counted from first_, at position x from first_.
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
     const std::int64_t by = (y + skew_[1]) >> 4, bz = (z + skew_[2]) >> 4;
@@ -67,8 +61,11 @@ class VolumeBricks {
   std::array<std::int64_t, 3> first_, count_;  // groups along x, strips along y and z
   std::array<std::int64_t, 3> skew_{};         // strips from the beginning of the first block to first_
   std::int64_t blocks_y_ = 0;
-  std::unique_ptr<Group[]> groups_;         // written before they are read; not cleared before
-  std::vector<const std::uint64_t*> gray_;  // by strip
+  // Of every group, written before it is read and not cleared before. Most groups have no gray bricks, so most of the
+  // memory for first_gray_ is never touched.
+  std::unique_ptr<std::uint32_t[]> colours_;     // bit i: brick i is black; bit 16 + i: it is gray
+  std::unique_ptr<std::uint32_t[]> first_gray_;  // index of the first gray brick's bits in the strip
+  std::vector<const std::uint64_t*> gray_;       // by strip
 };
 
 }  // namespace blackleaf::detail

@@ -50,61 +50,77 @@ class VolumeScan {
   static constexpr std::int64_t kLine = 64 / sizeof(T);  // values in a cache line
   static_assert(kPieceGroups <= detail::VolumeBricks::kMostGroups);
 
-  struct Row {
-    const T* values;      // of voxel x0
-    std::int64_t x0, x1;  // in universe coordinates, [x0, x1); empty outside the volume
+  // Sixteen rows of at most kPieceGroups groups.
+  struct Piece {
+    std::int64_t strip, group, groups;
+    std::int64_t x0, x1;  // of the volume, [x0, x1)
+    std::int64_t y, z;    // of row 0
+    std::int64_t offset;  // of the value at (x0, y, z), which may lie outside the volume
   };
 
   static std::array<std::int64_t, 3> sum(const std::array<std::int64_t, 3>& a, const std::array<std::int64_t, 3>& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   }
 
-  // The part of a strip's row that lies in a piece and in the volume.
-  Row row(std::int64_t strip, unsigned number, std::int64_t group) const {
-    const std::int64_t y = bricks_.strip_y(strip) + (number & 3), z = bricks_.strip_z(strip) + (number >> 2);
+  Piece piece(std::int64_t strip, std::int64_t group) const {
+    const std::int64_t end = bricks_.first_group() + bricks_.groups();
     const std::int64_t x0 = std::max(64 * group, low_[0]), x1 = std::min(64 * (group + kPieceGroups), high_[0]);
-    if (y < low_[1] || y >= high_[1] || z < low_[2] || z >= high_[2]) return {volume_.data, x0, x0};
-    return {volume_.data + (x0 - low_[0] + volume_.size[0] * (y - low_[1] + volume_.size[1] * (z - low_[2]))), x0, x1};
+    const std::int64_t y = bricks_.strip_y(strip), z = bricks_.strip_z(strip);
+    return {strip,
+            group,
+            std::min(kPieceGroups, end - group),
+            x0,
+            x1,
+            y,
+            z,
+            x0 - low_[0] + volume_.size[0] * (y - low_[1] + volume_.size[1] * (z - low_[2]))};
+  }
+  Piece next(const Piece& piece) const {
+    const std::int64_t group = piece.group + piece.groups;
+    return group < bricks_.first_group() + bricks_.groups() ? this->piece(piece.strip, group)
+                                                            : this->piece(piece.strip + 1, bricks_.first_group());
   }
 
-  static void prefetch(const Row& row) {
-    for (std::int64_t i = 0; i < row.x1 - row.x0; i += kLine) __builtin_prefetch(row.values + i);
+  // The first value of a row of a piece; none outside the volume.
+  const T* row(const Piece& piece, unsigned number) const {
+    const std::int64_t j = number & 3, k = number >> 2;
+    const std::int64_t y = piece.y + j, z = piece.z + k;
+    if (y < low_[1] || y >= high_[1] || z < low_[2] || z >= high_[2]) return nullptr;
+    return volume_.data + (piece.offset + volume_.size[0] * (j + volume_.size[1] * k));
   }
 
-  // The row's voxels as bits, from the one at a multiple of 64 at or before x0.
-  void test(const Row& row, std::array<std::uint64_t, detail::VolumeBricks::kMostGroups>& words) const {
-    const T* values = row.values;
+  // The voxels [x0, x1) of a row as bits, beginning with the multiple of 64 at or before x0.
+  void test(const T* values, std::int64_t x0, std::int64_t x1,
+            std::array<std::uint64_t, detail::VolumeBricks::kMostGroups>& words) const {
     std::size_t word = 0;
-    for (std::int64_t x = row.x0; x < row.x1; ++word) {
-      const std::int64_t next = std::min((x | 63) + 1, row.x1);
-      words[word] = next - x == 64 ? detail::word_bits(values, inside_)
-                                   : detail::row_bits(values, static_cast<int>(next - x), inside_) << (x & 63);
-      values += next - x;
-      x = next;
-    }
+    const auto part = [&](std::int64_t end) {
+      words[word++] = detail::row_bits(values, static_cast<int>(end - x0), inside_) << (x0 & 63);
+      values += end - x0;
+      x0 = end;
+    };
+    if ((x0 & 63) != 0) part(std::min((x0 | 63) + 1, x1));
+    for (; x0 + 64 <= x1; x0 += 64, values += 64) words[word++] = detail::word_bits(values, inside_);
+    if (x0 < x1) part(x1);
   }
 
   void scan(std::int64_t first, std::int64_t last, std::vector<std::uint64_t>& gray) {
-    const std::int64_t end = bricks_.first_group() + bricks_.groups();
     detail::VolumeBricks::Rows rows;
     std::vector<std::size_t> begin;
-    for (std::int64_t strip = first; strip < last; ++strip) {
-      begin.push_back(gray.size());
-      for (std::int64_t group = bricks_.first_group(); group < end; group += kPieceGroups) {
-        // Sixteen rows in step are more than hardware foresees, and it stops at every page: ask for what comes next.
-        const bool same = group + kPieceGroups < end;
-        const std::int64_t next_strip = same ? strip : std::min(strip + 1, last - 1);
-        const std::int64_t next_group = same ? group + kPieceGroups : bricks_.first_group();
-        for (unsigned number = 0; number < 16; ++number) {
-          const Row here = row(strip, number, group);
-          prefetch(row(next_strip, number, next_group));
-          if (here.x0 == here.x1)
-            rows[number].fill(0);
-          else
-            test(here, rows[number]);
-        }
-        bricks_.set(strip, group, std::min(kPieceGroups, end - group), rows, gray, begin.back());
+    Piece now = piece(first, bricks_.first_group());
+    while (now.strip < last) {
+      if (now.group == bricks_.first_group()) begin.push_back(gray.size());
+      // Sixteen rows in step are more than hardware foresees, and it stops at every page: ask for what comes next.
+      const Piece later = next(now);
+      for (unsigned number = 0; number < 16; ++number) {
+        if (const T* const ahead = row(later, number))
+          for (std::int64_t i = 0; i < later.x1 - later.x0; i += kLine) __builtin_prefetch(ahead + i);
+        if (const T* const here = row(now, number))
+          test(here, now.x0, now.x1, rows[number]);
+        else
+          rows[number].fill(0);
       }
+      bricks_.set(now.strip, now.group, now.groups, rows, gray, begin.back());
+      now = later;
     }
     for (std::int64_t strip = first; strip < last; ++strip)
       bricks_.set_gray(strip, gray.data() + begin[static_cast<std::size_t>(strip - first)]);
