@@ -110,12 +110,31 @@ Colour VolumeBricks::colour(const Cube& cube) const {
   return all == mask ? Colour::black : (any & black_or_gray) == 0 ? Colour::white : Colour::gray;
 }
 
+std::array<Subtree, 8> VolumeBricks::children(const Cube& cube) const {
+  std::array<Subtree, 8> children{};
+  const std::int64_t x = (cube.x >> 6) - first_[0];
+  if (x < 0 || x >= count_[0]) return children;
+  const int brick = cube.x >> 2 & 15;
+  for (std::size_t row = 0; row < 4; ++row) {
+    const std::int64_t y = (cube.y >> 2) - first_[1] + static_cast<std::int64_t>(row & 1);
+    const std::int64_t z = (cube.z >> 2) - first_[2] + static_cast<std::int64_t>(row >> 1);
+    if (y < 0 || y >= count_[1] || z < 0 || z >= count_[2]) continue;
+    const std::size_t group = index(x, y, z);
+    const std::uint32_t colours = colours_[group] >> brick;
+    for (const int i : {0, 1}) {
+      Subtree& child = children[2 * row + static_cast<std::size_t>(i)];
+      if ((colours >> i & 1) != 0)
+        child = Subtree::uniform(Colour::black);
+      else if ((colours >> (16 + i) & 1) != 0)
+        child = {gray_bits(group, y, z, brick + i), Colour::gray};
+    }
+  }
+  return children;
+}
+
 std::uint64_t VolumeBricks::brick(const Cube& cube) const {
   const std::int64_t y = (cube.y >> 2) - first_[1], z = (cube.z >> 2) - first_[2];
-  const std::size_t at = index((cube.x >> 6) - first_[0], y, z);
-  const std::uint32_t before = (colours_[at] >> 16) & ((std::uint32_t{1} << (cube.x >> 2 & 15)) - 1);
-  return gray_[static_cast<std::size_t>(y + count_[1] * z)]
-              [first_gray_[at] + static_cast<unsigned>(std::popcount(before))];
+  return gray_bits(index((cube.x >> 6) - first_[0], y, z), y, z, cube.x >> 2 & 15);
 }
 
 }  // namespace blackleaf::detail

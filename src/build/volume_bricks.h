@@ -11,11 +11,13 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "blackleaf/octree.h"
+#include "octree/node_arrays.h"
 
 namespace blackleaf::detail {
 
@@ -47,6 +49,8 @@ class VolumeBricks {
   bool misses(const Cube& cube) const;
   /// The colour of a cube; what lies outside the groups is white. Requires: 2 <= level <= 6.
   Colour colour(const Cube& cube) const;
+  /// The bricks of a node of level 3, by octant.
+  std::array<Subtree, 8> children(const Cube& cube) const;
   /// The bits of a gray brick. Requires: colour(cube) is gray, level 2.
   std::uint64_t brick(const Cube& cube) const;
 
@@ -56,6 +60,13 @@ class VolumeBricks {
     const std::int64_t by = (y + skew_[1]) >> 4, bz = (z + skew_[2]) >> 4;
     const std::int64_t block = x + count_[0] * (by + blocks_y_ * bz);
     return static_cast<std::size_t>(block << 8 | ((z + skew_[2]) & 15) << 4 | ((y + skew_[1]) & 15));
+  }
+
+  // The bits of a gray brick, the i-th of a group of the strip (y, z), counted from first_.
+  std::uint64_t gray_bits(std::size_t group, std::int64_t y, std::int64_t z, int i) const {
+    const std::uint32_t before = (colours_[group] >> 16) & ((std::uint32_t{1} << i) - 1);
+    return gray_[static_cast<std::size_t>(y + count_[1] * z)]
+                [first_gray_[group] + static_cast<unsigned>(std::popcount(before))];
   }
 
   std::array<std::int64_t, 3> first_, count_;  // groups along x, strips along y and z

@@ -146,6 +146,7 @@ class BrickProducer {
     return bricks_.colour(cube);
   }
   Task child(const Task&, const Cube&, int) const { return {}; }
+  std::array<detail::Subtree, 8> bricks(const Task&, const Cube& cube) const { return bricks_.children(cube); }
   std::uint64_t brick(const Task&, const Cube& cube) const { return bricks_.brick(cube); }
 
  private:
