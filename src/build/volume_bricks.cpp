@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "octree/brick.h"
 
@@ -9,6 +10,14 @@ namespace blackleaf::detail {
 namespace {
 
 constexpr std::uint32_t kAllBlack = 0xFFFF;
+
+using Pair [[gnu::vector_size(16)]] = std::uint64_t;
+
+Pair load(const std::uint64_t* words) {
+  Pair pair;
+  std::memcpy(&pair, words, sizeof pair);
+  return pair;
+}
 
 // Bits 0, 4, 8, ... of a word as 16 bits.
 std::uint32_t every_fourth(std::uint64_t word) {
@@ -53,26 +62,34 @@ VolumeBricks::VolumeBricks(const std::array<std::int64_t, 3>& low, const std::ar
 
 void VolumeBricks::set(std::int64_t strip, std::int64_t group, std::int64_t count, const Rows& rows,
                        std::vector<std::uint64_t>& gray, std::size_t begin) {
-  const std::int64_t y = strip % count_[1], z = strip / count_[1];
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    std::uint64_t any = 0, all = ~std::uint64_t{0};
+  // OR and AND of the sixteen rows, two groups at a time; an odd last group has a neighbour that is not looked at.
+  std::array<std::uint64_t, kMostGroups> any, all;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += 2) {
+    Pair any_row = load(&rows[0][i]), all_rows = any_row;
 #pragma GCC unroll 16
-    for (std::size_t row = 0; row < 16; ++row) {
-      any |= rows[row][i];
-      all &= rows[row][i];
+    for (std::size_t row = 1; row < 16; ++row) {
+      const Pair pair = load(&rows[row][i]);
+      any_row |= pair;
+      all_rows &= pair;
     }
-    const std::size_t at = index(group - first_[0] + static_cast<std::int64_t>(i), y, z);
-    if (any == all && any + 1 <= 1) {  // one colour throughout
-      colours_[at] = any != 0 ? kAllBlack : 0;
-      continue;
+    std::memcpy(&any[i], &any_row, sizeof any_row);
+    std::memcpy(&all[i], &all_rows, sizeof all_rows);
+  }
+  std::size_t at = index(group - first_[0], strip % count_[1], strip / count_[1]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i, at += kBlockGroups) {
+    if (any[i] == 0) {
+      colours_[at] = 0;
+    } else if (~all[i] == 0) {
+      colours_[at] = kAllBlack;
+    } else {
+      const std::uint64_t any_two = any[i] | any[i] >> 1, all_two = all[i] & all[i] >> 1;
+      const std::uint32_t black = every_fourth(all_two & all_two >> 2);
+      const std::uint32_t grays = every_fourth(any_two | any_two >> 2) & ~black;
+      colours_[at] = black | grays << 16;
+      first_gray_[at] = static_cast<std::uint32_t>(gray.size() - begin);
+      for (std::uint32_t rest = grays; rest != 0; rest &= rest - 1)
+        gray.push_back(gather(rows, i, 4 * static_cast<unsigned>(std::countr_zero(rest))));
     }
-    any |= any >> 1;
-    all &= all >> 1;
-    const std::uint32_t black = every_fourth(all & all >> 2), grays = every_fourth(any | any >> 2) & ~black;
-    colours_[at] = black | grays << 16;
-    first_gray_[at] = static_cast<std::uint32_t>(gray.size() - begin);
-    for (std::uint32_t rest = grays; rest != 0; rest &= rest - 1)
-      gray.push_back(gather(rows, i, 4 * static_cast<unsigned>(std::countr_zero(rest))));
   }
 }
 

@@ -55,6 +55,8 @@ class VolumeBricks {
   std::uint64_t brick(const Cube& cube) const;
 
  private:
+  static constexpr std::size_t kBlockGroups = 256;  // 16 by 16
+
   // The group of brick row (y, z), counted from first_, at position x from first_.
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
     const std::int64_t by = (y + skew_[1]) >> 4, bz = (z + skew_[2]) >> 4;

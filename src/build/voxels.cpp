@@ -104,7 +104,7 @@ class VolumeScan {
   }
 
   void scan(std::int64_t first, std::int64_t last, std::vector<std::uint64_t>& gray) {
-    detail::VolumeBricks::Rows rows;
+    detail::VolumeBricks::Rows rows{};
     std::vector<std::size_t> begin;
     Piece now = piece(first, bricks_.first_group());
     while (now.strip < last) {
