@@ -1,6 +1,7 @@
 #include "blackleaf/voxels.h"
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -142,6 +143,7 @@ class BrickProducer {
 
   Task root() const { return {}; }
   Colour classify(Task&, const Cube& cube) const {
+    assert(cube.level <= kMaxDepth);
     if (cube.level > 6) return bricks_.misses(cube) ? Colour::white : Colour::gray;
     return bricks_.colour(cube);
   }
