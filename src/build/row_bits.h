@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -18,6 +20,12 @@ std::uint64_t row_bits(const T* values, int count, const Inside& inside) {
   std::uint64_t bits = 0;
   for (int i = 0; i < count; ++i) bits |= std::uint64_t{inside(values[i])} << i;
   return bits;
+}
+
+/// The same for 64 values.
+template <class T, class Inside>
+std::uint64_t word_bits(const T* values, const Inside& inside) {
+  return row_bits(values, 64, inside);
 }
 
 /// A closed range of values, prepared for row_bits(). NaN lies in none.
@@ -36,38 +44,56 @@ class InRange {
 #else
 
 // Sixteen values at a time: compared in vectors of 16 bytes, the verdicts (all ones or zero in each lane) narrowed to
-// bytes by signed saturation, which keeps -1 and 0, and their top bits collected.
+// bytes by signed saturation, which keeps -1 and 0, and their top bits collected. Vectors know only signed `greater`
+// for integers; so integers are asked whether they are outside, and unsigned ones compared with their top bits flipped.
 template <class T>
 class InRange {
  public:
-  InRange(T low, T high) : low_(fill(low)), high_(fill(high)) {}
+  InRange(T low, T high) : low_(low), high_(high), lows_(fill(low)), highs_(fill(high)) {}
 
-  bool operator()(T value) const { return low_[0] <= value && value <= high_[0]; }
+  bool operator()(T value) const { return low_ <= value && value <= high_; }
 
-  std::uint64_t sixteen(const T* values) const {
-    constexpr std::size_t kLanes = 16 / sizeof(T);
+  std::uint64_t sixteen(const T* values) const { return verdicts(values) ^ (kOutside ? 0xFFFF : 0); }
+  std::uint64_t sixty_four(const T* values) const {
+    const std::uint64_t bits =
+        verdicts(values) | verdicts(values + 16) << 16 | verdicts(values + 32) << 32 | verdicts(values + 48) << 48;
+    return kOutside ? ~bits : bits;
+  }
+
+ private:
+  static constexpr bool kOutside = std::is_integral_v<T>;
+  using Lane = typename std::conditional_t<kOutside, std::make_signed<T>, std::type_identity<T> >::type;
+  using Lanes [[gnu::vector_size(16)]] = Lane;
+
+  static Lanes fill(T value) {
+    std::array<T, 16 / sizeof(T)> lanes;
+    lanes.fill(value);
+    return load(lanes.data());
+  }
+  static Lanes load(const T* values) {
+    Lanes lanes;
+    std::memcpy(&lanes, values, sizeof lanes);
+    if constexpr (std::is_unsigned_v<T>) lanes ^= std::numeric_limits<Lane>::min();
+    return lanes;
+  }
+
+  std::uint64_t verdicts(const T* values) const {
     Vectors<sizeof(T)> verdicts;
     for (std::size_t i = 0; i < sizeof(T); ++i) {
-      Lanes lanes;
-      std::memcpy(&lanes, values + i * kLanes, sizeof lanes);
-      const auto verdict = (low_ <= lanes) & (lanes <= high_);
-      verdicts.v[i] = std::bit_cast<__m128i>(verdict);
+      const Lanes lanes = load(values + i * (16 / sizeof(T)));
+      if constexpr (kOutside)
+        verdicts.v[i] = std::bit_cast<__m128i>((lows_ > lanes) | (lanes > highs_));
+      else
+        verdicts.v[i] = std::bit_cast<__m128i>((lows_ <= lanes) & (lanes <= highs_));
     }
     return static_cast<std::uint64_t>(_mm_movemask_epi8(narrow(verdicts)));
   }
 
- private:
-  using Lanes [[gnu::vector_size(16)]] = T;
   template <std::size_t kCount>
   struct Vectors {
     __m128i v[kCount];
   };
 
-  static Lanes fill(T value) {
-    std::array<T, 16 / sizeof(T)> lanes;
-    lanes.fill(value);
-    return std::bit_cast<Lanes>(lanes);
-  }
   static __m128i narrow(const Vectors<1>& a) { return a.v[0]; }
   static __m128i narrow(const Vectors<2>& a) { return _mm_packs_epi16(a.v[0], a.v[1]); }
   static __m128i narrow(const Vectors<4>& a) {
@@ -82,7 +108,8 @@ class InRange {
     return narrow(fours);
   }
 
-  Lanes low_, high_;
+  T low_, high_;
+  Lanes lows_, highs_;
 };
 
 template <class T>
@@ -92,6 +119,12 @@ std::uint64_t row_bits(const T* values, int count, const InRange<T>& inside) {
   for (; i + 16 <= count; i += 16) bits |= inside.sixteen(values + i) << i;
   for (; i < count; ++i) bits |= std::uint64_t{inside(values[i])} << i;
   return bits;
+}
+
+/// The same for 64 values.
+template <class T>
+std::uint64_t word_bits(const T* values, const InRange<T>& inside) {
+  return inside.sixty_four(values);
 }
 
 #endif

@@ -1,13 +1,15 @@
 #include "blackleaf/voxels.h"
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 #include <vector>
 
 #include "blackleaf/error.h"
-#include "octree/brick.h"
 #include "octree/produce.h"
+#include "parallel.h"
 #include "row_bits.h"
+#include "volume_bricks.h"
 
 namespace blackleaf {
 namespace {
@@ -20,119 +22,137 @@ std::string point(const std::array<std::int64_t, 3>& p) {
   return "(" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " + std::to_string(p[2]) + ")";
 }
 
-// Rows of up to 64 values are tested at a time and kept as bits; a block of 64^3 voxels (32 KiB of bits) stays in the
-// first-level cache while its bricks are put together, and each cache line of the volume is read once.
-constexpr int kBlockLevel = 6;
+constexpr double kScanPart = 0.9;  // of the time goes into reading the volume, as progress has it
 
-constexpr std::size_t kBlockBricks = std::size_t{1} << 3 * (kBlockLevel - 2);
-
+// Reads a volume front to back, as it lies in memory, into the colours and bits of its bricks.
 template <class T, class Inside>
-class VoxelProducer {
+class VolumeScan {
  public:
-  // A node of the block level owns its bricks; those below it look into them.
-  struct Task {
-    std::vector<std::uint64_t> own;         // the bricks of a block, x fastest
-    const std::uint64_t* bricks = nullptr;  // of the block that the node is or lies in
-  };
+  VolumeScan(const VolumeView<T>& volume, const std::array<std::int64_t, 3>& low, const Inside& inside)
+      : volume_(volume), inside_(inside), low_(low), high_(sum(low, volume.size)), bricks_(low_, high_) {}
 
-  VoxelProducer(const VolumeView<T>& volume, const std::array<std::int32_t, 3>& corner, int depth, const Inside& inside)
-      : volume_(volume), inside_(inside) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low_[i] = corner[i];
-      high_[i] = corner[i] + volume.size[i];
-    }
-    last_ = volume.size[0] * volume.size[1] * volume.size[2] - 1;
-    // Blocks must not be larger than the pieces that produce() hands to its threads, three levels below the root.
-    block_level_ = depth <= 5 ? std::max(depth, 2) : std::min(depth - 3, kBlockLevel);
-  }
-
-  Task root() const { return {}; }
-
-  Colour classify(Task& task, const Cube& cube) const {
-    if (cube.level < block_level_) return Colour::gray;
-    const std::int64_t side = cube.side();
-    if (cube.x + side <= low_[0] || cube.x >= high_[0] || cube.y + side <= low_[1] || cube.y >= high_[1] ||
-        cube.z + side <= low_[2] || cube.z >= high_[2])
-      return Colour::white;
-    if (cube.level > block_level_) return Colour::gray;
-    task.own.resize(kBlockBricks);
-    task.bricks = task.own.data();
-    return read(cube, task.own);
-  }
-
-  Task child(const Task& task, const Cube&, int) const { return {{}, task.bricks}; }
-
-  std::uint64_t brick(const Task& task, const Cube& cube) const {
-    const int mask = (1 << block_level_) - 1;
-    return task.bricks[index((cube.x & mask) >> 2, (cube.y & mask) >> 2, (cube.z & mask) >> 2)];
+  // `bricks` refers to this object.
+  const detail::VolumeBricks& bricks(const Work& work) {
+    const std::int64_t strips = bricks_.strips();
+    const std::int64_t step = std::max<std::int64_t>(1, kValuesAtOnce / (16 * volume_.size[0]));
+    gray_.resize(static_cast<std::size_t>((strips + step - 1) / step));
+    detail::for_each_index(gray_.size(), work, [&](std::size_t i) {
+      const std::int64_t first = static_cast<std::int64_t>(i) * step;
+      scan(first, std::min(first + step, strips), gray_[i]);
+    });
+    return bricks_;
   }
 
  private:
+  static constexpr std::int64_t kValuesAtOnce = std::int64_t{1} << 20;  // of a thread, between two reports of progress
+  // A strip is read in pieces of at most 2 KiB a row. While one piece is tested the next is fetched, and both together
+  // must fit the first-level cache or nearly so.
+  static constexpr std::int64_t kPieceGroups = 32 / sizeof(T);
   static constexpr std::int64_t kLine = 64 / sizeof(T);  // values in a cache line
+  static_assert(kPieceGroups <= detail::VolumeBricks::kMostGroups);
 
-  static std::size_t index(int x, int y, int z) {
-    constexpr int kBits = kBlockLevel - 2;
-    return static_cast<std::size_t>(x | y << kBits | z << 2 * kBits);
+  // Sixteen rows of at most kPieceGroups groups.
+  struct Piece {
+    std::int64_t strip, group, groups;
+    std::int64_t x0, x1;  // of the volume, [x0, x1)
+    std::int64_t y, z;    // of row 0
+    std::int64_t offset;  // of the value at (x0, y, z), which may lie outside the volume
+  };
+
+  static std::array<std::int64_t, 3> sum(const std::array<std::int64_t, 3>& a, const std::array<std::int64_t, 3>& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   }
 
-  std::int64_t row_offset(std::int64_t y, std::int64_t z) const {
-    return volume_.size[0] * (y - low_[1] + volume_.size[1] * (z - low_[2]));
+  Piece piece(std::int64_t strip, std::int64_t group) const {
+    const std::int64_t end = bricks_.first_group() + bricks_.groups();
+    const std::int64_t x0 = std::max(64 * group, low_[0]), x1 = std::min(64 * (group + kPieceGroups), high_[0]);
+    const std::int64_t y = bricks_.strip_y(strip), z = bricks_.strip_z(strip);
+    return {strip,
+            group,
+            std::min(kPieceGroups, end - group),
+            x0,
+            x1,
+            y,
+            z,
+            x0 - low_[0] + volume_.size[0] * (y - low_[1] + volume_.size[1] * (z - low_[2]))};
+  }
+  Piece next(const Piece& piece) const {
+    const std::int64_t group = piece.group + piece.groups;
+    return group < bricks_.first_group() + bricks_.groups() ? this->piece(piece.strip, group)
+                                                            : this->piece(piece.strip + 1, bricks_.first_group());
   }
 
-  // Fills the block's bricks; the result is its colour.
-  Colour read(const Cube& cube, std::vector<std::uint64_t>& block) const {
-    const int bricks = 1 << (block_level_ - 2);
-    const std::int64_t x0 = std::max<std::int64_t>(cube.x, low_[0]);
-    const std::int64_t x1 = std::min<std::int64_t>(std::int64_t{cube.x} + cube.side(), high_[0]);
-    std::uint64_t any = 0, all = ~std::uint64_t{0};
-    for (int bz = 0; bz < bricks; ++bz)
-      for (int by = 0; by < bricks; ++by) {
-        std::array<std::uint64_t, 16> rows{};
-        for (int row = 0; row < 16; ++row) {
-          const std::int64_t y = cube.y + 4 * by + (row & 3), z = cube.z + 4 * bz + (row >> 2);
-          if (y < low_[1] || y >= high_[1] || z < low_[2] || z >= high_[2]) continue;
-          const std::int64_t offset = x0 - low_[0] + row_offset(y, z);
-          // The block's rows lie far apart in memory, where no hardware sees them coming: ask for the next brick's now.
-          for (std::int64_t ahead = offset + 4 * volume_.size[0]; ahead < offset + 4 * volume_.size[0] + (x1 - x0);
-               ahead += kLine)
-            __builtin_prefetch(volume_.data + std::min(ahead, last_));
-          rows[static_cast<std::size_t>(row)] =
-              detail::row_bits(volume_.data + offset, static_cast<int>(x1 - x0), inside_) << (x0 - cube.x);
-        }
-        std::uint64_t any_row = 0, all_rows = ~std::uint64_t{0};
-        for (const std::uint64_t row : rows) {
-          any_row |= row;
-          all_rows &= row;
-        }
-        for (int bx = 0; bx < bricks; ++bx) {
-          const int shift = 4 * bx;
-          std::uint64_t brick = 0;
-          if ((all_rows >> shift & 0xF) == 0xF)
-            brick = ~std::uint64_t{0};
-          else if ((any_row >> shift & 0xF) != 0)
-            brick = gather(rows, shift);
-          block[index(bx, by, bz)] = brick;
-          any |= brick;
-          all &= brick;
-        }
+  // The first value of a row of a piece; none outside the volume.
+  const T* row(const Piece& piece, unsigned number) const {
+    const std::int64_t j = number & 3, k = number >> 2;
+    const std::int64_t y = piece.y + j, z = piece.z + k;
+    if (y < low_[1] || y >= high_[1] || z < low_[2] || z >= high_[2]) return nullptr;
+    return volume_.data + (piece.offset + volume_.size[0] * (j + volume_.size[1] * k));
+  }
+
+  // The voxels [x0, x1) of a row as bits, beginning with the multiple of 64 at or before x0.
+  void test(const T* values, std::int64_t x0, std::int64_t x1,
+            std::array<std::uint64_t, detail::VolumeBricks::kMostGroups>& words) const {
+    std::size_t word = 0;
+    const auto part = [&](std::int64_t end) {
+      words[word++] = detail::row_bits(values, static_cast<int>(end - x0), inside_) << (x0 & 63);
+      values += end - x0;
+      x0 = end;
+    };
+    if ((x0 & 63) != 0) part(std::min((x0 | 63) + 1, x1));
+    for (; x0 + 64 <= x1; x0 += 64, values += 64) words[word++] = detail::word_bits(values, inside_);
+    if (x0 < x1) part(x1);
+  }
+
+  void scan(std::int64_t first, std::int64_t last, std::vector<std::uint64_t>& gray) {
+    detail::VolumeBricks::Rows rows{};
+    std::vector<std::size_t> begin;
+    Piece now = piece(first, bricks_.first_group());
+    while (now.strip < last) {
+      if (now.group == bricks_.first_group()) begin.push_back(gray.size());
+      // Sixteen rows in step are more than hardware foresees, and it stops at every page: ask for what comes next.
+      const Piece later = next(now);
+      for (unsigned number = 0; number < 16; ++number) {
+        if (const T* const ahead = row(later, number))
+          for (std::int64_t i = 0; i < later.x1 - later.x0; i += kLine) __builtin_prefetch(ahead + i);
+        if (const T* const here = row(now, number))
+          test(here, now.x0, now.x1, rows[number]);
+        else
+          rows[number].fill(0);
       }
-    return any == 0 ? Colour::white : ~all == 0 ? Colour::black : Colour::gray;
-  }
-
-  static std::uint64_t gather(const std::array<std::uint64_t, 16>& rows, int shift) {
-    std::uint64_t brick = 0;
-    for (unsigned row = 0; row < 16; ++row) {
-      const std::uint64_t four = rows[row] >> shift & 0xF;
-      brick |= ((four & 3) | (four & 12) << 6) << (detail::kSpread[row & 3] << 1 | detail::kSpread[row >> 2] << 2);
+      bricks_.set(now.strip, now.group, now.groups, rows, gray, begin.back());
+      now = later;
     }
-    return brick;
+    for (std::int64_t strip = first; strip < last; ++strip)
+      bricks_.set_gray(strip, gray.data() + begin[static_cast<std::size_t>(strip - first)]);
   }
 
   const VolumeView<T>& volume_;
   const Inside& inside_;
-  std::array<std::int64_t, 3> low_{}, high_{};  // the volume in universe coordinates, [low, high)
-  std::int64_t last_;                           // index of the last value
-  int block_level_;
+  std::array<std::int64_t, 3> low_, high_;  // the volume in universe coordinates, [low, high)
+  detail::VolumeBricks bricks_;
+  std::vector<std::vector<std::uint64_t>> gray_;  // the gray bricks' bits, from each thread's portion of strips
+};
+
+// The walk along the curve, once all is known about the bricks.
+class BrickProducer {
+ public:
+  struct Task {};
+
+  explicit BrickProducer(const detail::VolumeBricks& bricks) : bricks_(bricks) {}
+
+  Task root() const { return {}; }
+  Colour classify(Task&, const Cube& cube) const {
+    assert(cube.level <= kMaxDepth);
+    if (cube.level > 6) return bricks_.misses(cube) ? Colour::white : Colour::gray;
+    return bricks_.colour(cube);
+  }
+  Task child(const Task&, const Cube&, int) const { return {}; }
+  std::array<detail::Subtree, 8> bricks(const Task&, const Cube& cube) const { return bricks_.children(cube); }
+  std::uint64_t brick(const Task&, const Cube& cube) const { return bricks_.brick(cube); }
+
+ private:
+  const detail::VolumeBricks& bricks_;
 };
 
 template <class T, class Inside>
@@ -160,8 +180,9 @@ Octree build(const VolumeView<T>& volume, const Inside& inside, const VolumePlac
                 "the volume reaches to " + point(reach) + " but a universe of depth " + std::to_string(depth) + " to " +
                     std::to_string(std::int64_t{1} << depth),
                 "use depth " + std::to_string(depth_for(reach)) + " or leave it open");
-  return detail::produce(VoxelProducer<T, Inside>(volume, placement.corner, depth, inside), depth, std::move(frame),
-                         work);
+  VolumeScan<T, Inside> scan(volume, {placement.corner[0], placement.corner[1], placement.corner[2]}, inside);
+  const BrickProducer bricks(scan.bricks(detail::part_of(work, 0, kScanPart)));
+  return detail::produce(bricks, depth, std::move(frame), detail::part_of(work, kScanPart, 1));
 }
 
 }  // namespace

@@ -10,6 +10,12 @@
 //     std::uint64_t brick(const Task&, const Cube&) const; // the 64 voxels of a level-2 node
 //   };
 //
+// and, if it knows a shortcut,
+//
+//     std::array<Subtree, 8> bricks(const Task&, const Cube&) const;  // the children of a level-3 node
+//
+// which is then asked instead of the three above for nodes of level 3.
+//
 // Its functions are called from many threads. In a universe of depth 1 the root is asked for as a brick whose octant 0
 // is the universe; what it says of the other voxels is ignored (classify must then not answer black unless octant 0 is
 // black and not white unless it is white).
@@ -81,6 +87,8 @@ class Production {
   }
 
   Subtree serial(Task& task, const Cube& cube, std::uint8_t table, NodeArrays& arrays) const {
+    if constexpr (requires { producer_.bricks(task, cube); })
+      if (cube.level == 3) return arrays.close(3, producer_.bricks(task, cube));
     const Colour colour = producer_.classify(task, cube);
     if (colour != Colour::gray) return Subtree::uniform(colour);
     if (cube.level == 2) return Subtree::brick(producer_.brick(task, cube));

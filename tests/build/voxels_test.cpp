@@ -100,6 +100,59 @@ TYPED_TEST(Voxels, LargeUniversesAndThreads) {
   }
 }
 
+TYPED_TEST(Voxels, LongRowsAndThinVolumes) {
+  using T = TypeParam;
+  std::mt19937 random(7);
+  for (const std::array<std::int64_t, 3>& size :
+       {std::array<std::int64_t, 3>{4501, 5, 6}, {3, 1201, 2}, {2, 3, 1300}, {4096, 4, 4}, {1, 1, 700}, {700, 70, 1}}) {
+    SCOPED_TRACE(std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]));
+    const std::vector<T> values = random_values<T>(static_cast<std::size_t>(size[0] * size[1] * size[2]), random);
+    const ValueRange<T> range{T(0), T(42)};
+    for (const std::array<std::int32_t, 3>& corner : {std::array<std::int32_t, 3>{0, 0, 0}, {61, 2, 7}, {64, 127, 1}}) {
+      const Octree octree = octree_from_voxels<T>({values.data(), size}, range, {0, corner}, {}, {1, {}});
+      reference::expect_valid(octree);
+      std::uint64_t black = 0;
+      bool equal = true;
+      std::size_t next = 0;
+      for (int z = 0; z < size[2]; ++z)
+        for (int y = 0; y < size[1]; ++y)
+          for (int x = 0; x < size[0]; ++x, ++next) {
+            black += range(values[next]);
+            equal = equal && range(values[next]) == octree.contains(corner[0] + x, corner[1] + y, corner[2] + z);
+          }
+      EXPECT_TRUE(equal);
+      EXPECT_EQ(volume(octree), black);
+      EXPECT_EQ(octree_from_voxels<T>({values.data(), size}, range, {0, corner}, {}, {2, {}}), octree);
+    }
+  }
+}
+
+TEST(VoxelsOnce, ProgressAndCancelling) {
+  const std::vector<std::uint8_t> values(130 * 130 * 130, 1);
+  const VolumeView<std::uint8_t> view{values.data(), {130, 130, 130}};
+  const ValueRange<std::uint8_t> range{1, 1};
+  for (const int threads : {1, 2}) {
+    std::vector<double> seen;
+    const Work watched{threads, [&](double done) {
+                         seen.push_back(done);
+                         return true;
+                       }};
+    octree_from_voxels(view, range, {}, {}, watched);
+    ASSERT_GT(seen.size(), 2u);
+    EXPECT_GT(*std::min_element(seen.begin(), seen.end()), 0);
+    EXPECT_DOUBLE_EQ(*std::max_element(seen.begin(), seen.end()), 1);
+    if (threads == 1) {
+      EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    }
+    for (const double last : {0.0, 0.5, 0.95})
+      EXPECT_EQ(error_of(ErrorCode::cancelled,
+                         [&] {
+                           octree_from_voxels(view, range, {}, {}, {threads, [&](double done) { return done < last; }});
+                         }),
+                "interrupted");
+  }
+}
+
 TEST(VoxelsOnce, EveryValueIsReadOnce) {
   for (const int side : {2, 5, 37, 70}) {
     std::vector<std::int32_t> values(static_cast<std::size_t>(side * side * side));
