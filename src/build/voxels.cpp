@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "blackleaf/error.h"
+#include "octree/parallel.h"
 #include "octree/produce.h"
-#include "parallel.h"
 #include "row_bits.h"
 #include "volume_bricks.h"
 
