@@ -5,13 +5,18 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <new>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
 #include "blackleaf/mesh_file.h"
 #include "file/input_file.h"
+#include "io/isolated.h"
+#include "io/mesh_checks.h"
 
 namespace blackleaf {
 namespace {
@@ -106,15 +111,8 @@ class SceneReader {
   TriangleMesh mesh_;
 };
 
-}  // namespace
-
-TriangleMesh read_mesh(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  if (const detail::InputFile file(path); !file.is_regular()) {
-    throw Error(ErrorCode::io, name + ": is not an ordinary file", "copy it to one first");
-  } else if (file.size() == 0) {
-    throw Error(ErrorCode::bad_input, name + ": is empty", "get it again from its source");
-  }
+// Through assimp, which damaged files can crash, keep busy for ever, or make use any amount of memory.
+TriangleMesh read_with_assimp(const std::string& name) {
   Assimp::Importer importer;
   const aiScene* scene = nullptr;
   std::string why;
@@ -122,13 +120,106 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
     // Nothing that moves vertices: no joining, no rescaling, no pre-transformation in single precision.
     scene = importer.ReadFile(name, aiProcess_Triangulate);
     why = reason(importer.GetErrorString());
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& exception) {
     why = reason(exception.what());
   }
-  if (!scene || !scene->mRootNode)
+  if (!scene || !scene->mRootNode) {
+    if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // assimp has turned it into a text
     throw Error(ErrorCode::bad_input, fmt::format("{}: cannot be read as a mesh: {}", name, why),
                 "use STL, OBJ, PLY, OFF, glTF or 3MF");
+  }
   return SceneReader(*scene, name).read();
+}
+
+// What comes back from the process that reads: this, then the vertices and triangles or the text of the error.
+struct AnswerHead {
+  std::uint64_t vertices = 0, triangles = 0;
+  std::uint64_t error_size = 0;  // bytes of the text; 0 when there is none
+  ErrorCode code = ErrorCode::bad_input;
+  std::uint32_t unused = 0;
+};
+static_assert(sizeof(AnswerHead) == 32 && sizeof(Eigen::Vector3d) == 24);
+
+void answer_mesh(const std::string& name, const detail::Answer& answer) {
+  AnswerHead head;
+  try {
+    const TriangleMesh mesh = read_with_assimp(name);
+    head.vertices = mesh.vertices.size();
+    head.triangles = mesh.triangles.size();
+    answer.write(&head, sizeof head);
+    answer.write(mesh.vertices.data(), mesh.vertices.size() * sizeof mesh.vertices[0]);
+    answer.write(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    head.error_size = text.size();
+    head.code = error.code();
+    answer.write(&head, sizeof head);
+    answer.write(text.data(), text.size());
+  }
+}
+
+// Piece by piece, so that a count that is not true takes no memory.
+template <class Container>
+bool read_items(detail::Isolated& child, std::uint64_t count, Container& items) {
+  constexpr std::uint64_t kPiece = std::uint64_t{1} << 16;
+  while (items.size() < count) {
+    const std::size_t done = items.size();
+    items.resize(static_cast<std::size_t>(std::min(count, done + std::max<std::uint64_t>(done, kPiece))));
+    if (!child.read(items.data() + done, (items.size() - done) * sizeof items[0])) return false;
+  }
+  return true;
+}
+
+// Bytes that reading goes through: those of the file, unpacked, and of the files beside it that glTF refers to.
+std::uint64_t bytes_to_read(const std::filesystem::path& path, std::uint64_t size) {
+  std::string suffix = path.extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (suffix == ".3mf" || suffix == ".zae") return 16 * size;
+  if (suffix != ".gltf") return size;
+  std::error_code error;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  for (std::filesystem::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+    std::error_code none;
+    if (i->path().extension() != ".bin" || !i->is_regular_file(none)) continue;
+    if (const std::uint64_t more = i->file_size(none); !none) size += more;
+  }
+  return size;
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  detail::IsolatedLimits limits;
+  {
+    const detail::InputFile file(path);
+    if (!file.is_regular()) throw Error(ErrorCode::io, name + ": is not an ordinary file", "copy it to one first");
+    if (file.size() == 0) throw Error(ErrorCode::bad_input, name + ": is empty", "get it again from its source");
+    detail::check_mesh_file(file, path);
+    const std::uint64_t bytes = bytes_to_read(path, file.size());
+    limits.memory = (std::uint64_t{2} << 30) + 64 * bytes;
+    limits.seconds = 10 + (bytes >> 20);
+  }
+  detail::Isolated child(limits, [&](const detail::Answer& answer) { answer_mesh(name, answer); });
+  AnswerHead head;
+  TriangleMesh mesh;
+  std::string text;
+  if (!child.read(&head, sizeof head) || !read_items(child, head.error_size, text) ||
+      !read_items(child, head.vertices, mesh.vertices) || !read_items(child, head.triangles, mesh.triangles)) {
+    if (child.interrupted()) throw Error(ErrorCode::cancelled, name + ": reading it was interrupted");
+    throw Error(ErrorCode::bad_input, name + ": is damaged: reading it ended abnormally",
+                "get it again from its source");
+  }
+  if (head.error_size > 0) throw Error(head.code, text);
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle)
+      if (vertex >= mesh.vertices.size())
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("{}: a face refers to vertex {} of {}", name, vertex, mesh.vertices.size()),
+                    "export it again");
+  return mesh;
 }
 
 }  // namespace blackleaf

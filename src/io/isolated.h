@@ -1,0 +1,53 @@
+// Work that may crash, hang or eat memory, done in a process of its own.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace blackleaf::detail {
+
+/// What the child may use at most.
+struct IsolatedLimits {
+  std::uint64_t memory = 0;   // bytes of address space beyond what this process has already
+  std::uint64_t seconds = 0;  // of processor time
+};
+
+/// The child's end: writes to the parent, and ends the process at once when the parent is gone.
+class Answer {
+ public:
+  explicit Answer(int descriptor) : descriptor_(descriptor) {}
+  void write(const void* bytes, std::size_t size) const;
+
+ private:
+  int descriptor_;
+};
+
+/// A child process, forked off to do one piece of work whose answer comes back through a pipe. Nothing of this process
+/// changes, whatever the work does. The child has only the calling thread, no open files but the pipe, no output, and
+/// leaves no core file. However it ends, the destructor has seen it off: no process is left behind.
+class Isolated {
+ public:
+  /// Throws Error(io) when no process can be started. `work` must use no other threads and no locks of this program.
+  Isolated(const IsolatedLimits& limits, const std::function<void(const Answer&)>& work);
+  ~Isolated();
+  Isolated(const Isolated&) = delete;
+  Isolated& operator=(const Isolated&) = delete;
+
+  /// The next bytes of the answer; false when it ends before, which is how crashes and limits show.
+  bool read(void* bytes, std::size_t size);
+  /// After read() has given false: whether the child was ended by a signal that asks a program to stop (Ctrl-C, ...).
+  bool interrupted();
+
+ private:
+  void finish(bool at_once);
+
+  int descriptor_ = -1;
+  pid_t child_ = -1;
+  int status_ = 0;
+};
+
+}  // namespace blackleaf::detail

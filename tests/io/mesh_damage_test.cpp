@@ -1,0 +1,194 @@
+// Damaged meshes: each is refused with one clear line, in this process, which goes on as if nothing had been.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+
+#include "blackleaf/implicit.h"
+#include "blackleaf/mesh_file.h"
+#include "file/temporary_folder.h"
+#include "io/isolated.h"
+#include "reference/dense_grid.h"
+
+namespace blackleaf {
+namespace {
+
+using test::expect_error;
+
+const std::string kTetrahedron = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+const std::string kPlyHeader =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+    "property list uchar int vertex_indices\nend_header\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos);
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+class MeshDamage : public testing::Test {
+ protected:
+  void refuse(const std::string& name, std::string_view contents, std::vector<std::string> pieces) {
+    SCOPED_TRACE(testing::Message() << name << ", " << contents.size() << " bytes");
+    test::write_file(folder_ / name, contents);
+    pieces.push_back(name);
+    expect_error(ErrorCode::bad_input, pieces, [&] { read_mesh(folder_ / name); });
+    no_child_left();
+  }
+  std::size_t triangles(const std::string& name, std::string_view contents) {
+    test::write_file(folder_ / name, contents);
+    return read_mesh(folder_ / name).triangles.size();
+  }
+  static void no_child_left() {
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+    EXPECT_EQ(errno, ECHILD);
+  }
+  std::string written(const std::string& name) {
+    std::mt19937 random(7);
+    write_mesh(boundary_mesh(reference::octree(reference::random_solid(3, random))), folder_ / name);
+    return test::read_text(folder_ / name);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(MeshDamage, BinaryPlyCutAnywhere) {
+  const std::string whole = written("whole.ply");
+  const std::size_t header = whole.find("end_header\n") + 11;
+  for (std::size_t length = 4; length < header - 1; length += 7)
+    refuse("a.ply", whole.substr(0, length), {"end_header", "cut off"});
+  for (std::size_t length = header; length < whole.size(); length += 1 + length / 20)
+    refuse("a.ply", whole.substr(0, length), {"its header tells of", "cut off"});
+  refuse("a.ply", whole.substr(0, whole.size() - 1), {"\"face\"", "cut off"});
+  refuse("a.ply", replaced(whole, "element face ", "element face 9"), {"\"face\"", "cut off"});
+  EXPECT_GT(triangles("a.ply", whole), 0u);
+}
+
+TEST_F(MeshDamage, TextPly) {
+  const std::string whole = kPlyHeader + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(triangles("a.ply", whole), 1u);
+  EXPECT_EQ(triangles("a.ply", whole.substr(0, whole.size() - 1)), 1u);
+  refuse("a.ply", replaced(whole, "vertex 3", "vertex 99999999"), {"99999999 of \"vertex\"", "there are 4"});
+  refuse("a.ply", replaced(whole, "face 1", "face 2"), {"2 of \"face\"", "there are 1"});
+  refuse("a.ply", replaced(whole, "face 1", "face -1"), {"no good count"});
+  refuse("a.ply", replaced(whole, "0 1 2", "0 1 3"), {"vertex 3"});
+  refuse("a.ply", whole.substr(0, 20), {"end_header"});
+  refuse("a.ply", replaced(whole, "end_header", std::string(70000, 'x')), {"in its first 64 KiB"});
+}
+
+TEST_F(MeshDamage, Off) {
+  EXPECT_EQ(triangles("a.off", kTetrahedron), 4u);
+  EXPECT_EQ(triangles("a.off", replaced(kTetrahedron, "OFF\n", "OFF ")), 4u);
+  EXPECT_EQ(triangles("a.off", replaced(kTetrahedron, "OFF\n", "OFF # made by hand\n")), 4u);
+  refuse("a.off", "OFF\n999999999 999999999 0\n", {"999999999 vertices", "cut off"});
+  refuse("a.off", "OFF\n4\n", {"no numbers"});
+  refuse("a.off", replaced(kTetrahedron, "4 4 6", "5 4 6"), {});
+  refuse("a.off", replaced(kTetrahedron, "4 4 6", "4 7 6"), {"7 faces but there are 4 faces", "cut off"});
+  refuse("a.off", replaced(kTetrahedron, "4 4 6", "12 4 6"), {"there are 8 vertices"});
+  refuse("a.off", replaced(kTetrahedron, "3 1 2 3", "3 1 2 77"), {"face 3 refers to vertex 77", "the last is 3"});
+  refuse("a.off", replaced(kTetrahedron, "3 1 2 3", "3 1 2 -1"), {"face 3"});
+  for (std::size_t length = 4; length < kTetrahedron.size() - 1; ++length)
+    refuse("a.off", kTetrahedron.substr(0, length), {});
+}
+
+TEST_F(MeshDamage, Stl) {
+  const std::string whole = written("whole.stl");
+  const std::string size = std::to_string(whole.size()), triangles_there = std::to_string((whole.size() - 84) / 50);
+  refuse("a.stl", whole.substr(0, whole.size() / 2),
+         {"its header tells of " + triangles_there + " triangles (" + size + " bytes) but there are " +
+              std::to_string(whole.size() / 2) + " bytes",
+          "the file was cut off, get it again"});
+  refuse("a.stl", whole + "and more", {"(" + size + " bytes)", "damaged"});
+  refuse("a.STL", whole.substr(0, 84), {"cut off"});
+  EXPECT_EQ(triangles("a.stl",
+                      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                      "endloop\nendfacet\nendsolid a\n"),
+            1u);
+  std::string solid = whole;  // some programs begin binary files so, too
+  solid.replace(0, 5, "solid");
+  EXPECT_EQ(triangles("a.stl", solid), (whole.size() - 84) / 50);
+}
+
+// Bytes changed at random: an answer or an Error, whatever assimp makes of them.
+TEST_F(MeshDamage, ChangedBytes) {
+  std::mt19937 random(41);
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"a.off", kTetrahedron},
+      {"a.ply", kPlyHeader + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"b.ply", written("b.ply")},
+      {"a.stl", written("a.stl")},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}};
+  for (int i = 0; i < 300; ++i)
+    for (const auto& [name, whole] : files) {
+      SCOPED_TRACE(testing::Message() << name << " " << i);
+      std::string changed = whole;
+      for (unsigned k = 0; k <= random() % 3; ++k)
+        changed[random() % std::min<std::size_t>(changed.size(), 500)] = static_cast<char>(random() % 128);
+      test::write_file(folder_ / name, changed);
+      try {
+        const TriangleMesh mesh = read_mesh(folder_ / name);
+        for (const auto& triangle : mesh.triangles)
+          for (const auto vertex : triangle) ASSERT_LT(vertex, mesh.vertices.size());
+      } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      }
+    }
+  no_child_left();
+}
+
+// Whatever becomes of the child, the parent sees a short answer and has no process left.
+TEST(MeshIsolated, EndsOfAllKinds) {
+  const detail::IsolatedLimits limits{std::uint64_t{1} << 30, 1};
+  const auto answer = [&](const std::function<void(const detail::Answer&)>& work, bool wanted_interrupted) {
+    {
+      detail::Isolated child(limits, work);
+      std::array<char, 4> bytes{};
+      EXPECT_TRUE(child.read(bytes.data(), 2));
+      EXPECT_EQ(std::string(bytes.data()), "ok");
+      EXPECT_FALSE(child.read(bytes.data(), 1));
+      EXPECT_EQ(child.interrupted(), wanted_interrupted);
+    }
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+  };
+  answer([](const auto& to) { to.write("ok", 2); }, false);
+  answer([](const auto& to) { to.write("ok", 2), throw std::runtime_error("no"); }, false);
+  answer([](const auto& to) { to.write("ok", 2), std::abort(); }, false);
+  answer([](const auto& to) { to.write("ok", 2), static_cast<void>(raise(SIGSEGV)); }, false);
+  answer([](const auto& to) { to.write("ok", 2), static_cast<void>(raise(SIGINT)); }, true);
+  answer(
+      [](const auto& to) {
+        to.write("ok", 2);
+        for (volatile bool forever = true; forever;) continue;
+      },
+      false);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  answer(
+      [](const auto& to) {
+        to.write("ok", 2);
+        for (std::vector<std::string> all;;) all.emplace_back(std::size_t{1} << 28, 'x');
+      },
+      false);
+#endif
+}
+
+// An answer larger than a pipe holds, read in pieces; and one that nobody reads.
+TEST(MeshIsolated, LongAnswers) {
+  const std::string text(5'000'000, 'a');
+  const auto work = [&](const detail::Answer& to) { to.write(text.data(), text.size()); };
+  {
+    detail::Isolated child({std::uint64_t{1} << 30, 100}, work);
+    std::string read(text.size(), ' ');
+    for (std::size_t at = 0; at < text.size(); at += 1'000'000) ASSERT_TRUE(child.read(read.data() + at, 1'000'000));
+    EXPECT_EQ(read, text);
+  }
+  { const detail::Isolated unread({std::uint64_t{1} << 30, 100}, work); }
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+}
+
+}  // namespace
+}  // namespace blackleaf
