@@ -11,9 +11,11 @@ namespace blackleaf {
 
 struct VolumeOptions {
   /// Values from low to high, both included, are inside; a side left out is unbounded. NaN is never inside.
+  /// Bounds are doubles: among 64-bit whole numbers beyond 2^53, the bound is the double nearest to what was meant.
   std::optional<double> low = {}, high = {};
   /// Exactly this value is inside. At most one of range and label may be given; without either, any value > 0 is
-  /// inside.
+  /// inside. For volumes of 64-bit whole numbers a label from 2^53 to 2^64 in size is an Error(bad_argument): doubles
+  /// beyond do not tell neighbours apart.
   std::optional<double> label = {};
   int depth = 0;        // 0: the smallest universe that holds the volume
   bool centre = false;  // centre the volume in the universe instead of putting it at the corner

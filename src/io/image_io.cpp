@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <exception>
+#include <iostream>
 #include <mutex>
 #include <streambuf>
 
@@ -21,16 +23,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// While ITK works: no warnings of its own on stderr; what is worth telling comes as an Error. ITK's switches are global
-// to the process, so only one thread at a time is inside.
+// While ITK works: no words of its own on stderr or stdout; what is worth telling comes as an Error. ITK's switches are
+// global to the process, so only one thread at a time is inside.
 class Quiet {
  public:
-  Quiet() : lock_(mutex()), warnings_(itk::Object::GetGlobalWarningDisplay()), cerr_(std::cerr.rdbuf(&nothing_)) {
+  Quiet()
+      : lock_(mutex()),
+        warnings_(itk::Object::GetGlobalWarningDisplay()),
+        cerr_(std::cerr.rdbuf(&nothing_)),
+        cout_(std::cout.rdbuf(&nothing_)) {
     itk::Object::SetGlobalWarningDisplay(false);
     nifti_set_debug_level(0);
   }
   ~Quiet() {
     nifti_set_debug_level(1);  // its default; it has no way to ask
+    std::cout.rdbuf(cout_);
     std::cerr.rdbuf(cerr_);
     itk::Object::SetGlobalWarningDisplay(warnings_);
   }
@@ -50,6 +57,7 @@ class Quiet {
   Nothing nothing_;
   bool warnings_;
   std::streambuf* cerr_;
+  std::streambuf* cout_;
 };
 
 // ITK's reasons run over many lines, with addresses and file names: what remains is the last thing they say.
@@ -171,18 +179,33 @@ class LonelyName {
                   "set TMPDIR to a folder you can write to");
     folder_ = pattern;
     link_ = folder_ / ("image" + suffix);
-    fs::create_symlink(fs::absolute(path), link_);
+    std::error_code error;
+    fs::create_symlink(fs::absolute(path), link_, error);
+    if (!error) return;
+    const std::string where = folder_.string();
+    remove();
+    throw Error(ErrorCode::io, fmt::format("{}: cannot make a link there: {}", where, error.message()),
+                "set TMPDIR to a folder that can hold links");
   }
-  ~LonelyName() {
-    std::error_code ignored;
-    if (!folder_.empty()) fs::remove_all(folder_, ignored);
-  }
+  ~LonelyName() { remove(); }
   LonelyName(const LonelyName&) = delete;
   LonelyName& operator=(const LonelyName&) = delete;
 
   fs::path of(const fs::path& path) const { return folder_.empty() ? path : link_; }
+  /// The text with the true name in place of the other one.
+  std::string told(std::string text, const std::string& name) const {
+    for (const std::string& other : {link_.string(), folder_.string()})
+      for (std::size_t at = 0; !other.empty() && (at = text.find(other, at)) != std::string::npos; at += name.size())
+        text.replace(at, other.size(), name);
+    return text;
+  }
 
  private:
+  void remove() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  }
+
   fs::path folder_, link_;
 };
 
@@ -194,9 +217,22 @@ struct ImageReader::Itk {
   ImageFormat format;
   LonelyName lonely;
 
-  [[noreturn]] void fail(const std::exception& exception) const {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: cannot be read as {}: {}", name, format_name(format), reason(exception)),
+  // Requires: called while an exception is handled.
+  [[noreturn]] void fail() const {
+    std::string why = "for an unknown reason";
+    try {
+      throw;
+    } catch (const Error&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw Error(ErrorCode::bad_input, name + ": needs more memory than there is", "crop or resample it first");
+    } catch (const std::exception& exception) {
+      why = lonely.told(reason(exception), name);
+    } catch (...) {  // some of ITK's libraries throw what is no std::exception
+    }
+    if (why.find("rthonormal") != std::string::npos)
+      throw Error(ErrorCode::bad_input, name + ": its axes are not orthogonal", "use .nrrd, which can hold such axes");
+    throw Error(ErrorCode::bad_input, fmt::format("{}: cannot be read as {}: {}", name, format_name(format), why),
                 "the file is damaged or of another format");
   }
 };
@@ -211,14 +247,17 @@ ImageReader::ImageReader(const fs::path& path, ImageFormat format) : itk_(std::m
                   "its contents are not what its name says; check where it comes from");
     itk_->io->SetFileName(name);
     itk_->io->ReadImageInformation();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& exception) {
-    itk_->fail(exception);
+    take_information();
+  } catch (...) {
+    itk_->fail();
   }
+}
+
+void ImageReader::take_information() {
   const auto& io = *itk_->io;
   information_.components = static_cast<int>(io.GetNumberOfComponents());
-  information_.component = component_of(io.GetComponentType(), io.GetComponentSize());
+  if (io.GetComponentType() != itk::IOComponentEnum::UNKNOWNCOMPONENTTYPE)  // which has no size
+    information_.component = component_of(io.GetComponentType(), io.GetComponentSize());
   const unsigned dimensions = io.GetNumberOfDimensions();
   for (unsigned i = 0; i < dimensions; ++i) information_.size.push_back(static_cast<std::int64_t>(io.GetDimensions(i)));
   for (unsigned i = 0; i < std::min(dimensions, 3u); ++i) {
@@ -242,8 +281,8 @@ void ImageReader::read(void* values) {
     }
     itk_->io->SetIORegion(region);
     itk_->io->Read(values);
-  } catch (const std::exception& exception) {
-    itk_->fail(exception);
+  } catch (...) {
+    itk_->fail();
   }
 }
 

@@ -46,11 +46,13 @@ class ImageReader {
   ImageReader& operator=(const ImageReader&) = delete;
 
   const ImageInformation& information() const { return information_; }
-  /// All values, the first dimension fastest. Requires: room for all of them.
+  /// All values, the first dimension fastest. Requires: room for all of them, set to zero: some
+  /// damage leaves values unread without an error.
   void read(void* values);
 
  private:
   struct Itk;
+  void take_information();
   std::unique_ptr<Itk> itk_;
   ImageInformation information_;
 };

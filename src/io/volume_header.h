@@ -1,4 +1,4 @@
-// Is a volume file believable? Asked before memory is taken for its voxels.
+// Is a volume file believable? Asked before ITK sees the file, and before memory is taken for its voxels.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,11 @@
 #include "io/image_io.h"
 
 namespace blackleaf::detail {
+
+/// Throws Error(bad_input) when the header is not of the format or has sizes, axes, types or places of values that make
+/// no sense, or when a data file that it names cannot be read. To be asked before ITK sees the file: its libraries
+/// answer some of these with an endless loop, with abort(), or with values from nowhere.
+void check_header(const std::filesystem::path& path, ImageFormat format);
 
 /// Throws Error(bad_input) when a volume of `voxels` values, `bytes` in memory, cannot be in the file (or in the data
 /// file that it names): raw values need their full length, compressed ones at least a thousandth of it. Throws

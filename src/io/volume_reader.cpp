@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -52,6 +53,7 @@ class VolumeJob {
       if (!format) fail("has no suffix of a volume", "use .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .hdr or .img");
       fail("is empty", "get it again from its source");
     }
+    detail::check_header(path_, *format);
     ImageReader reader(path_, *format);
     const ImageInformation& information = reader.information();
     check_shape(information);
@@ -107,6 +109,14 @@ class VolumeJob {
     }
     if (!origin_.allFinite() || !axes_.allFinite())
       fail("has an origin or axes that are not finite", "mend its header");
+    // The volume of a voxel, of that of a box with edges as long.
+    const Eigen::RowVector3d lengths{axes_.col(0).stableNorm(), axes_.col(1).stableNorm(), axes_.col(2).stableNorm()};
+    Eigen::Matrix3d directions = axes_;
+    for (int i = 0; i < 3; ++i) directions.col(i) /= lengths[i];
+    const double spanned = std::abs(directions.col(0).dot(directions.col(1).cross(directions.col(2))));
+    if (!(spanned > 1e-9))  // nor is it with an axis of no length
+      fail("its axes do not span space: one has no length or lies in the plane of the others",
+           "mend its header or get it again from its source");
     for (std::size_t i = 0; i < std::min<std::size_t>(3, size.size()); ++i) size_[i] = size[i];
     if (*std::max_element(size_.begin(), size_.end()) > std::int64_t{1} << kMaxDepth)
       fail(fmt::format("is too large ({}) for any universe", text(size)), "no side may be over 2^20 voxels");
@@ -128,9 +138,19 @@ class VolumeJob {
     frame_ = {origin_ - axes_ * (corner + Eigen::Vector3d::Constant(0.5)), axes_, "mm"};
   }
 
+  // A double tells whole numbers apart up to 2^53 only.
+  void check_label() const {
+    if (options_.label && std::abs(*options_.label) >= 0x1p53 && std::abs(*options_.label) <= 0x1p64)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("{}: a label of {} cannot be told from its neighbours among 64-bit values", name(),
+                              *options_.label),
+                  "labels must be below 2^53; give a range of values or renumber the labels");
+  }
+
   template <class T>
   Octree octree(ImageReader& reader) const {
-    const std::unique_ptr<T[]> values(new (std::nothrow) T[voxels_]);
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 8) check_label();
+    const std::unique_ptr<T[]> values(new (std::nothrow) T[voxels_]());  // zeros
     if (!values)
       fail(fmt::format("needs {} bytes of memory, more than there are", voxels_ * sizeof(T)),
            "crop or resample it first");

@@ -1,9 +1,12 @@
 // Files that are not what they seem: refused in one clear line, at once, whatever they claim.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <limits>
 #include <random>
 
 #include "blackleaf/implicit.h"
+#include "blackleaf/measures.h"
 #include "blackleaf/volume_file.h"
 #include "nrrd_text.h"
 
@@ -51,7 +54,9 @@ TEST_F(VolumeDamage, HeadersThatClaimTooMuch) {
   refuse("a.mha", meta + "10000 10000 10000\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n1234",
          {"1000000000000 voxels", "there are 4"});
   refuse("b.mha",
-         meta + "10000 10000 10000\nCompressedData = True\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n1234",
+         meta +
+             "10000 10000 10000\nCompressedData = True\nCompressedDataSize = 4\nElementType = "
+             "MET_FLOAT\nElementDataFile = LOCAL\n1234",
          {"1000000000000 voxels"});
   refuse("c.mha", meta + "0 10 10\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n1234", {});
   refuse("d.mha", meta + "-2 10 10\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n1234", {});
@@ -110,6 +115,143 @@ TEST_F(VolumeDamage, NothingButNaN) {
   values[3] = -1;
   test::write_nrrd<float>(folder_ / "a.nrrd", "float", "2 2 2", values);
   EXPECT_TRUE(read_volume(folder_ / "a.nrrd").is_empty());
+}
+
+// One NIfTI file of 2 x 2 x 2 voxels of one byte, all black, with millimetre voxels and no word on its orientation.
+std::string nifti() {
+  std::string bytes(352, '\0');
+  const auto put = [&]<class T>(std::size_t at, T value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
+  put(0, std::int32_t{348});
+  for (std::size_t i = 0; i < 8; ++i) put(40 + 2 * i, static_cast<std::int16_t>(i == 0 ? 3 : i < 4 ? 2 : 1));
+  put(70, std::int16_t{2});
+  put(72, std::int16_t{8});
+  for (std::size_t i = 0; i < 8; ++i) put(76 + 4 * i, 1.0F);
+  put(108, 352.0F);
+  bytes.replace(344, 3, "n+1");
+  return bytes + std::string(8, '\1');
+}
+
+template <class T>
+std::string with(std::string bytes, std::size_t at, const std::vector<T>& values) {
+  return bytes.replace(at, values.size() * sizeof(T), test::raw_bytes(values));
+}
+
+TEST_F(VolumeDamage, NiftiHeaders) {
+  using Shorts = std::vector<std::int16_t>;
+  using Floats = std::vector<float>;
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  test::write_file(folder_ / "z.nii", nifti());
+  EXPECT_EQ(volume(read_volume(folder_ / "z.nii")), 8u);
+  testing::internal::CaptureStderr();
+  refuse("z.nii", with(nifti(), 40, Shorts{3, 0, 2, 2}), {"z.nii: has no voxels (0 x 2 x 2)"});
+  refuse("z.nii", with(nifti(), 40, Shorts{3, -2, 2, 2}), {"z.nii: has no voxels (-2 x 2 x 2)"});
+  for (const int dimensions : {9, 0, -1, 300})
+    refuse("z.nii", with(nifti(), 40, Shorts{static_cast<std::int16_t>(dimensions)}),
+           {"tells of " + std::to_string(dimensions) + " dimensions"});
+  refuse("z.nii", with(nifti(), 70, Shorts{0}), {"unknown type"});
+  refuse("z.nii", with(nifti(), 0, Shorts{540}), {"NIfTI-2"});
+  for (const float offset : {0.0F, 300.0F, -5.0F, 348.0F, 352.5F, 353.0F, 1e30F, kNaN, kInfinity})
+    for (const bool cut : {false, true})
+      refuse("z.nii", with(nifti(), 108, Floats{offset}).substr(0, cut ? 352 : 360), {});
+  for (const float size : {0.0F, kNaN, kInfinity}) {
+    refuse("z.nii", with(nifti(), 80, Floats{size}), {"along dimension 1 (pixdim)"});
+    refuse("z.nii", with(nifti(), 88, Floats{size}), {"along dimension 3 (pixdim)"});
+  }
+  for (const float bad : {kNaN, kInfinity, -3e38F}) {
+    const std::string q = with(nifti(), 252, Shorts{1}), s = with(nifti(), 254, Shorts{1});
+    for (std::size_t i = 0; i < 6; ++i) refuse("z.nii", with(q, 256 + 4 * i, Floats{bad}), {"qform"});
+    for (std::size_t i = 0; i < 12; ++i) refuse("z.nii", with(s, 280 + 4 * i, Floats{bad}), {"sform"});
+    refuse("z.nii", with(s, 280, Floats(12, bad)), {"sform"});
+  }
+  const std::string sform = with(nifti(), 254, Shorts{1});
+  refuse("z.nii", with(sform, 280, Floats{1, .5F, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}), {"axes are not orthogonal", ".nrrd"});
+  refuse("z.nii", with(sform, 280, Floats(12, 0.0F)), {"axes"});
+  refuse("z.nii", with(sform, 280, Floats{1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0}), {"axes"});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(VolumeDamage, MetaImageHeaders) {
+  const auto meta = [](const std::string& more, const std::string& dimensions = "3",
+                       const std::string& type = "MET_UCHAR") {
+    return "ObjectType = Image\nNDims = " + dimensions + "\nBinaryData = True\n" + more +
+           "DimSize = 2 2 2\nElementType = " + type + "\nElementDataFile = LOCAL\n";
+  };
+  const std::string values(8, '\1');
+  test::write_file(folder_ / "z.mha", meta("") + values);
+  EXPECT_EQ(volume(read_volume(folder_ / "z.mha")), 8u);
+  for (const char* dimensions : {"-1", "0", "11", "300", "", "three", "99999999999"})
+    refuse("z.mha", meta("", dimensions) + values, {"dimensions"});
+  refuse("z.mha", "ObjectType: Image\nNDims: -1\nElementDataFile: LOCAL\n", {"dimensions"});
+  refuse("z.mha", meta("", "3", "MET_FOO") + values, {"unknown type ('MET_FOO')"});
+  refuse("z.mha", meta("", "3", "MET_STRING") + values, {"unknown type"});
+  for (const char* key : {"ElementSpacing", "Offset", "TransformMatrix"})
+    for (const char* word : {"nan", "inf", "1e999", "x"})
+      refuse("z.mha", meta(std::string(key) + " = " + word + " 1 1\n") + values, {key, word});
+  refuse("z.mha", meta("ElementSpacing = 0 1 1\n") + values, {"axes do not span space"});
+  refuse("z.mha", meta("TransformMatrix = 1 0 0 1 0 0 0 0 1\n") + values, {});
+}
+
+// Compressed values of a length that the header does not tell, or tells wrong, are refused every time.
+TEST_F(VolumeDamage, MetaImageCompressedLength) {
+  std::vector<std::int16_t> values(64);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int16_t>(i * 7919 % 200);
+  const std::string raw = test::raw_bytes(values);
+  uLongf length = compressBound(raw.size());
+  std::string packed(length, '\0');
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &length, reinterpret_cast<const Bytef*>(raw.data()),
+                     raw.size()),
+            Z_OK);
+  packed.resize(length);
+  const auto meta = [&](const std::string& told) {
+    return "ObjectType = Image\nNDims = 3\nBinaryData = True\nCompressedData = True\n" + told +
+           "DimSize = 4 4 4\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" + packed;
+  };
+  const auto size = [](std::int64_t told) { return "CompressedDataSize = " + std::to_string(told) + "\n"; };
+  const auto exact = static_cast<std::int64_t>(length);
+  test::write_file(folder_ / "z.mha", meta(size(exact)));
+  EXPECT_EQ(volume(read_volume(folder_ / "z.mha")), 63u);
+  refuse("z.mha", meta(""), {"no CompressedDataSize"});
+  refuse("z.mha", meta(size(0)), {"no CompressedDataSize"});
+  for (const std::int64_t told : {exact - 1, exact / 2, std::int64_t{1}, exact + 1, std::int64_t{-1},
+                                  std::int64_t{99999999999999}, std::numeric_limits<std::int64_t>::min()})
+    refuse("z.mha", meta(size(told)), {});
+  refuse("z.mha", meta("CompressedDataSize = many\n"), {"'many'"});
+  refuse("z.mha", meta("HeaderSize = 7\n" + size(exact)), {});
+  refuse("z.mha", meta("HeaderSize = -1\n" + size(exact)), {"HeaderSize"});
+}
+
+TEST_F(VolumeDamage, NrrdHeaders) {
+  const auto nrrd = [](const std::string& more, const std::string& sizes = "2 2 2") {
+    return test::nrrd_header("uint8", sizes, 3, more) + "\n" + std::string(8, '\1');
+  };
+  const auto axes = [](const std::string& directions, const std::string& origin = "(0,0,0)") {
+    return "space: left-posterior-superior\nspace directions: " + directions + "\nspace origin: " + origin + "\n";
+  };
+  refuse("z.nrrd", nrrd("", "0 2 2"), {"z.nrrd: has no voxels (0 x 2 x 2)"});
+  refuse("z.nrrd", nrrd("", "2 -5 2"), {"z.nrrd: has no voxels (2 x -5 x 2)"});
+  refuse("z.nrrd", nrrd(axes("(1,0,0) (1,0,0) (0,0,1)")), {"axes do not span space"});
+  refuse("z.nrrd", nrrd(axes("(1,0,0) (0,1,0) (1,1,0)")), {"axes do not span space"});
+  refuse("z.nrrd", nrrd(axes("(0,0,0) (0,1,0) (0,0,1)")), {"z.nrrd: "});
+  refuse("z.nrrd", nrrd(axes("(nan,0,0) (0,1,0) (0,0,1)")), {"space directions has numbers that are not finite"});
+  refuse("z.nrrd", nrrd(axes("(1,0,0) (0,1,0) (0,0,1)", "(0,Inf,0)")), {"space origin has numbers"});
+  refuse("z.nrrd", nrrd("data file: /dev/zero\n"), {"its data file is not an ordinary file"});
+  refuse("z.nrrd", nrrd("data file: nothere.raw\n"), {"its data file cannot be read", "nothere.raw"});
+  test::write_file(folder_ / "z.nrrd", nrrd(axes("(1,0,0) (0.5,1,0) (0,0,1)")));
+  EXPECT_EQ(volume(read_volume(folder_ / "z.nrrd")), 8u);
+}
+
+TEST_F(VolumeDamage, LabelsBeyondDoubles) {
+  constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
+  test::write_nrrd<std::uint64_t>(folder_ / "z.nrrd", "uint64", "2 2 2",
+                                  {kLargest, kLargest - 1, (1ULL << 53) - 1, 1ULL << 53, (1ULL << 53) + 1, 0, 1, 2});
+  const auto read = [&](double label) { return volume(read_volume(folder_ / "z.nrrd", {.label = label})); };
+  EXPECT_EQ(read(0x1p53 - 1), 1u);
+  EXPECT_EQ(read(2), 1u);
+  for (const double label : {0x1p53, 18446744073709551615.0, -0x1p60})
+    expect_error(ErrorCode::bad_argument, {"z.nrrd", "label", "2^53"}, [&] { read(label); });
+  test::write_nrrd<float>(folder_ / "y.nrrd", "float", "2 1 1", {0x1p60F, 1});
+  EXPECT_EQ(volume(read_volume(folder_ / "y.nrrd", {.label = 0x1p60})), 1u);
 }
 
 }  // namespace
