@@ -3,11 +3,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <random>
+#include <thread>
 
 #include "blackleaf/implicit.h"
 #include "blackleaf/mesh_file.h"
@@ -123,7 +127,7 @@ TEST_F(MeshDamage, ChangedBytes) {
       {"b.ply", written("b.ply")},
       {"a.stl", written("a.stl")},
       {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}};
-  for (int i = 0; i < 300; ++i)
+  for (int i = 0; i < 100; ++i)
     for (const auto& [name, whole] : files) {
       SCOPED_TRACE(testing::Message() << name << " " << i);
       std::string changed = whole;
@@ -138,6 +142,30 @@ TEST_F(MeshDamage, ChangedBytes) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
       }
     }
+  no_child_left();
+}
+
+// Many threads that read and allocate while others fork: each child gets a heap in order, each reader its own answer.
+TEST_F(MeshDamage, ManyThreadsAtOnce) {
+  const std::string whole = written("whole.ply");
+  test::write_file(folder_ / "cut.ply", replaced(whole, "element face ", "element face 9"));
+  const std::size_t wanted = read_mesh(folder_ / "whole.ply").triangles.size();
+  std::atomic<int> wrong = 0, refused = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 25; ++i) {
+        if (read_mesh(folder_ / "whole.ply").triangles.size() != wanted) ++wrong;
+        try {
+          read_mesh(folder_ / "cut.ply");
+        } catch (const Error&) {
+          ++refused;
+        }
+      }
+    });
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(refused, 100);
   no_child_left();
 }
 
