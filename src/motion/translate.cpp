@@ -82,13 +82,20 @@ Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Le
   constexpr std::int64_t kFar = std::int64_t{1} << (kMaxDepth + 2);
   detail::Extent extent;
   bool far = false;
+  std::string sides;
   for (std::size_t i = 0; i < 3; ++i) {
     // Beyond kFar everything is outside whatever the universe; keep the fixed-point numbers small.
     const std::int64_t shift = std::clamp(by[i], -kFar, kFar);
     far = far || shift != by[i];
+    if (shift != by[i])
+      sides += (sides.empty() ? "" : ", ") + ("more than " + std::to_string(kFar)) + " voxels along " +
+               (by[i] < 0 ? '-' : '+') + static_cast<char>('x' + i);
     extent.min[i] = (box->min[i] + shift) * (std::int64_t{1} << FixedMotion::kFractionBits);
     extent.max[i] = (box->max[i] + shift) * (std::int64_t{1} << FixedMotion::kFractionBits);
   }
+  if (far && leaving != Leaving::clip)
+    throw Error(ErrorCode::out_of_universe, "the moved solid leaves every universe: it is moved by " + sides,
+                leaving == Leaving::error ? "move it less or clip it (--clip)" : "move it less");
   const auto target = detail::target_universe(octree.depth(), extent, leaving);
   if (far) return Octree(octree.depth(), Colour::white, octree.frame());
   Shift shift;
