@@ -96,6 +96,17 @@ Octree placed_in(const Octree& octree, const Octree& universe, const std::string
   return translate(octree, by).with_frame(to);
 }
 
+// What the function returns; its errors begin with the file's name.
+template <class Function>
+auto naming(const std::string& file, Function&& function) {
+  try {
+    return std::forward<Function>(function)();
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::cancelled) throw;
+    throw Error(error.code(), file + ": " + error.what());
+  }
+}
+
 Octree from_mesh(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
   refuse_options(o.input, "a mesh",
                  {{o.range.has_value(), "--range"}, {o.label.has_value(), "--label"}, {o.centre, "--centre"}});
@@ -107,22 +118,29 @@ Octree from_mesh(Session& session, const BuildOptions& o, const std::optional<Oc
     throw Error(ErrorCode::bad_argument, fmt::format("--fit is {}, which is more than the universe", *o.fit),
                 "give a fraction above 0 and at most 1");
 
+  // Smaller than any voxel of any universe.
+  if (o.fit && *o.fit < 0x1p-24)
+    throw Error(ErrorCode::bad_argument, fmt::format("--fit is {}, which is less than any voxel", *o.fit),
+                "give a fraction above 0 and at most 1, like 0.75");
+
   const TriangleMesh mesh = session.stage("read", [&](const Work&) { return read_mesh(o.input); });
   MeshPlacement placement;
   if (like) {
     placement = {like->depth(), like->frame()};
     facts["like"] = base_name(*o.like);
   } else if (o.voxel_size) {
-    placement = place_by_voxel_size(mesh, *o.voxel_size, o.depth.value_or(0));
+    placement = naming(o.input, [&] { return place_by_voxel_size(mesh, *o.voxel_size, o.depth.value_or(0)); });
     facts["voxel_size"] = *o.voxel_size;
   } else {
-    placement = place_by_fraction(mesh, o.depth.value_or(kMeshDepth), o.fit.value_or(kMeshFit));
+    placement = naming(o.input,
+                       [&] { return place_by_fraction(mesh, o.depth.value_or(kMeshDepth), o.fit.value_or(kMeshFit)); });
     facts["fit"] = o.fit.value_or(kMeshFit);
   }
   facts["depth"] = placement.depth;
   facts["rule"] = rule;
   return session.stage("build", [&](const Work& work) {
-    return octree_from_mesh(mesh, placement, rule == "centre" ? MeshRule::centre : MeshRule::touched, work);
+    const MeshRule mesh_rule = rule == "centre" ? MeshRule::centre : MeshRule::touched;
+    return naming(o.input, [&] { return octree_from_mesh(mesh, placement, mesh_rule, work); });
   });
 }
 
@@ -182,7 +200,8 @@ int run_build(Session& session) {
   if (!session.parse()) return kDone;
 
   check_octree_output(session, o.output);
-  check_input(o.input, "a mesh, volume or run stream");
+  if (o.input == "-") throw Error(ErrorCode::bad_argument, "standard input cannot be built from", "name a file");
+  check_plain_input(o.input, "a mesh, volume or run stream");
   std::optional<Octree> like;
   if (o.like) like = read_octree(session, *o.like).octree;
 
@@ -197,8 +216,8 @@ int run_build(Session& session) {
     octree = from_volume(session, o, like, facts);
   else
     octree = from_mesh(session, o, like, facts);
-  const std::uint64_t bytes = write_octree(session, octree, o.output, o.input, facts);
-  report_written(session, octree, o.output, bytes);
+  warn_if_empty(session, octree);
+  write_octree(session, octree, o.output, o.input, facts);
   return kDone;
 }
 

@@ -34,9 +34,7 @@ int run_combine(Session& session) {
   const Octree& a = pair.first;
   const Octree& b = pair.second;
   const Octree result = session.stage("combine", [&](const Work& work) { return chosen->second(a, b, work); });
-  const std::uint64_t bytes =
-      write_octree(session, result, output, first_name, {{"operation", operation}, {"with", base_name(second_name)}});
-  report_written(session, result, output, bytes);
+  write_octree(session, result, output, first_name, {{"operation", operation}, {"with", base_name(second_name)}});
   return kDone;
 }
 

@@ -60,7 +60,8 @@ int run_draw(Session& session) {
   PageText page_text;
   add_octree_input(session.app(), "FILE", input);
   session.app()
-      .add_option("--view", view_text, "direction toward the viewer; +z is up in the picture")
+      .add_option("--view", view_text,
+                  "direction toward the viewer, rounded to 2^-20 of its largest component; +z is up in the picture")
       ->required()
       ->type_name("x,y,z");
   add_output(session.app(), output, "picture: .svg .json .png .pdf; - prints svg or json");
@@ -78,6 +79,11 @@ int run_draw(Session& session) {
                 fmt::format("{} does not apply to JSON, which has no page", page_text.size ? "--size" : "--pen-width"),
                 "leave it out");
   const PageSize size = page_text.size ? parse_page_size("--size", *page_text.size) : PageSize{};
+  if (const double margins = 2 * PageOptions{}.margin_mm;
+      page_text.size && std::min(size.width_mm, size.height_mm) <= margins)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("--size is '{}', which the margins of {} mm fill", *page_text.size, margins / 2),
+                fmt::format("make both sides longer than {} mm", margins));
   const Eigen::Vector3d direction = parse_vector("--view", view_text);
   if (direction.isZero(0))
     throw Error(ErrorCode::bad_argument, "--view is zero, which is no direction", "give one like 3,-4,2");
@@ -89,23 +95,24 @@ int run_draw(Session& session) {
   const Octree octree = read_octree(session, input).octree;
   const LineDrawing drawing = session.stage("draw", [&](const Work& work) { return draw(octree, view, work); });
   const PageOptions page = page_for(drawing, page_text, size);
-  session.stage("write", [&](const Work&) {
-    if (output == "-")
-      print_out((kind == "svg" ? to_svg(drawing, page) : to_json(drawing)) + "\n");
-    else
-      write_drawing(drawing, output, page);
+  const double length = drawing.length();
+  session.write_stage([&] {
+    if (output != "-") return write_drawing(drawing, output, page);
+    const std::string picture = (kind == "svg" ? to_svg(drawing, page) : to_json(drawing)) + "\n";
+    check_interrupt();
+    print_out(picture);
   });
 
   if (output == "-") return kDone;
+  const std::optional<std::uint64_t> file_bytes = size_of(output);
   if (session.json())
     print_out(Json{{"output", output},
                    {"view", drawing.view.direction()},
                    {"strokes", drawing.strokes.size()},
-                   {"length", drawing.length()},
-                   {"file_bytes", size_of(output)}});
+                   {"length", length},
+                   {"file_bytes", file_bytes ? Json(*file_bytes) : Json()}});
   else if (!session.quiet())
-    print_out(
-        fmt::format("{}: {} strokes, {:.6f} voxels long\n", output, grouped(drawing.strokes.size()), drawing.length()));
+    print_out(fmt::format("{}: {} strokes, {:.6f} voxels long\n", output, grouped(drawing.strokes.size()), length));
   return kDone;
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "blackleaf/error.h"
+#include "interrupt.h"
+#include "session.h"
 
 namespace blackleaf::cli {
 namespace {
@@ -26,9 +28,10 @@ int report_current_exception() {
   try {
     throw;
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::cancelled) {
-      print_line("interrupted; nothing was written");
-      return kInterrupted;
+    // Whatever a signal made fail, the signal is the reason.
+    if (const int signal = interrupt_signal(); signal != 0) {
+      print_line(printed() ? "interrupted; what was printed is incomplete" : "interrupted; nothing was written");
+      return kSignal + signal;
     }
     print_line(error.what());
     return kBadInput;

@@ -4,11 +4,11 @@
 namespace blackleaf::cli {
 
 enum ExitCode : int {
-  kDone = 0,          // done
-  kNo = 1,            // the answer to the question is "no", or "they interfere"
-  kBadInput = 2,      // bad usage or bad input
-  kFault = 3,         // a fault of the program or of the machine
-  kInterrupted = 130  // Ctrl-C, as shells count: 128 + SIGINT
+  kDone = 0,      // done
+  kNo = 1,        // the answer to the question is "no", or "they interfere"
+  kBadInput = 2,  // bad usage or bad input
+  kFault = 3,     // a fault of the program or of the machine
+  kSignal = 128   // plus the number of the signal that interrupted it, as shells count: 130 for Ctrl-C
 };
 
 /// Prints the exception being handled as one line on standard error and returns its exit code.

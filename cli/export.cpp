@@ -30,9 +30,11 @@ void print_runs(const Octree& octree) {
   for_each_run(octree, [&](std::uint64_t count, bool black) {
     text += fmt::format("{} {}\n", count, black ? 1 : 0);
     if (text.size() < kPart) return;
+    check_interrupt();
     print_out(text);
     text.clear();
   });
+  check_interrupt();
   print_out(text);
 }
 
@@ -61,7 +63,7 @@ int run_export(Session& session) {
   const Octree octree = read_octree(session, input).octree;
   TriangleMesh mesh;
   if (kind == Kind::mesh) mesh = session.stage("build", [&](const Work&) { return boundary_mesh(octree); });
-  session.stage("write", [&](const Work&) {
+  session.write_stage([&] {
     if (output == "-")
       print_runs(octree);
     else if (kind == Kind::volume)
@@ -73,8 +75,8 @@ int run_export(Session& session) {
   });
 
   if (output == "-") return kDone;
-  const std::uint64_t bytes = size_of(output);
-  Json report = {{"output", output}, {"file_bytes", bytes}};
+  const std::optional<std::uint64_t> bytes = size_of(output);
+  Json report = {{"output", output}, {"file_bytes", bytes ? Json(*bytes) : Json()}};
   std::string what = kind == Kind::volume ? "volume" : "runs";
   if (kind == Kind::mesh) {
     report["triangles"] = mesh.triangles.size();
@@ -83,7 +85,7 @@ int run_export(Session& session) {
   if (session.json())
     print_out(report);
   else if (!session.quiet())
-    print_out(fmt::format("{}: {}, {} bytes\n", output, what, grouped(bytes)));
+    print_out(fmt::format("{}: {}{}\n", output, what, bytes ? ", " + counted(*bytes, "byte") : ""));
   return kDone;
 }
 

@@ -1,15 +1,15 @@
 #include "files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
+#include <cerrno>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 
 #include "blackleaf/error.h"
 #include "blackleaf/measures.h"
@@ -51,10 +51,11 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
-std::uint64_t size_of(const std::string& path) {
+std::optional<std::uint64_t> size_of(const std::string& path) {
   std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
   const std::uintmax_t size = fs::file_size(path, error);
-  return error ? 0 : size;
+  return error ? std::nullopt : std::optional<std::uint64_t>(size);
 }
 
 std::string counted(std::uint64_t number, const std::string& noun) {
@@ -72,6 +73,13 @@ void check_input(const std::string& path, const std::string& what) {
     throw Error(ErrorCode::io, fmt::format("'{}' is a folder, not {}", path, what), "name a file in it");
   if (access(path.c_str(), R_OK) != 0)
     throw Error(ErrorCode::io, fmt::format("'{}' may not be read", path), "change its permissions");
+}
+
+void check_plain_input(const std::string& path, const std::string& what) {
+  check_input(path, what);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    throw Error(ErrorCode::io, fmt::format("'{}' is a device or a pipe, not {}", path, what), "name an ordinary file");
 }
 
 void check_output(const std::string& path) {
@@ -110,16 +118,25 @@ void check_octree_output(const Session& session, const std::string& path) {
 std::vector<std::uint8_t> read_bytes(const std::string& path) {
   const bool standard = path == "-";
   if (!standard) check_input(path, "a file");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(standard ? nullptr : std::fopen(path.c_str(), "rb"),
-                                                               std::fclose);
-  std::FILE* const file = standard ? stdin : opened.get();
   const std::string name = standard ? "standard input" : "'" + path + "'";
-  if (file == nullptr) throw Error(ErrorCode::io, fmt::format("cannot open {}", name), "check its permissions");
+  struct Descriptor {
+    int number;
+    ~Descriptor() {
+      if (number > STDIN_FILENO) close(number);
+    }
+  };
+  const Descriptor file{standard ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (file.number < 0) throw Error(ErrorCode::io, fmt::format("cannot open {}", name), "check its permissions");
   std::vector<std::uint8_t> bytes;
   std::array<std::uint8_t, 1 << 16> part{};
-  while (const std::size_t count = std::fread(part.data(), 1, part.size(), file))
-    bytes.insert(bytes.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count));
-  if (std::ferror(file) != 0) throw Error(ErrorCode::io, fmt::format("cannot read {}", name), "check the disk");
+  for (;;) {
+    check_interrupt();
+    const ssize_t count = read(file.number, part.data(), part.size());
+    if (count == 0) break;
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw Error(ErrorCode::io, fmt::format("cannot read {}", name), "check the disk");
+    bytes.insert(bytes.end(), part.begin(), part.begin() + count);
+  }
   return bytes;
 }
 
@@ -154,29 +171,33 @@ std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, cons
   return {first, second};
 }
 
-std::uint64_t write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
-                           const Json& options) {
+void warn_if_empty(const Session& session, const Octree& octree) {
+  if (octree.is_empty()) session.warn("no voxel is black");
+}
+
+void write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
+                  const Json& options, const Json& more, const std::string& before) {
   const Json metadata = {{"program", "blackleaf"},
                          {"version", BLACKLEAF_VERSION},
                          {"source", base_name(source)},
                          {"command", session.command()},
                          {"options", options}};
   const std::string text = metadata.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return session.stage("write", [&](const Work&) -> std::uint64_t {
-    if (path == "-") {
+  if (path == "-") {
+    session.write_stage([&] {
       const std::vector<std::uint8_t> bytes = to_bytes(octree, text);
+      check_interrupt();
       print_out(std::string(bytes.begin(), bytes.end()));
-      return bytes.size();
-    }
-    save(octree, path, text);
-    return size_of(path);
-  });
-}
-
-void report_written(const Session& session, const Octree& octree, const std::string& path, std::uint64_t file_bytes,
-                    const Json& more) {
-  if (path == "-" || (session.quiet() && !session.json())) return;
-  const Measures measures = measure(octree);
+    });
+    return;
+  }
+  const bool telling = session.json() || !session.quiet();
+  Measures measures;
+  if (telling) measures = session.stage("measure", [&](const Work&) { return measure(octree); });
+  session.write_stage([&] { save(octree, path, text); });
+  if (!before.empty()) print_out(before);
+  if (!telling) return;
+  const std::optional<std::uint64_t> file_bytes = size_of(path);
   if (session.json()) {
     Json report = {{"output", path},
                    {"depth", octree.depth()},
@@ -184,15 +205,15 @@ void report_written(const Session& session, const Octree& octree, const std::str
                    {"black_leaves", measures.black_leaves},
                    {"internal_nodes", measures.internal_nodes},
                    {"memory_bytes", octree.memory_bytes()},
-                   {"file_bytes", file_bytes}};
+                   {"file_bytes", file_bytes ? Json(*file_bytes) : Json()}};
     report.update(more);
     print_out(report);
     return;
   }
-  print_out(
-      fmt::format("{}: depth {}, {}, {}, {}, {}\n", path, octree.depth(), counted(measures.volume, "voxel"),
-                  (measures.black_leaves == 1 ? "1 black leaf" : grouped(measures.black_leaves) + " black leaves"),
-                  counted(measures.internal_nodes, "internal node"), counted(file_bytes, "byte")));
+  print_out(fmt::format("{}: depth {}, {}, {}, {}{}\n", path, octree.depth(), counted(measures.volume, "voxel"),
+                        measures.black_leaves == 1 ? "1 black leaf" : grouped(measures.black_leaves) + " black leaves",
+                        counted(measures.internal_nodes, "internal node"),
+                        file_bytes ? ", " + counted(*file_bytes, "byte") : ""));
 }
 
 }  // namespace blackleaf::cli

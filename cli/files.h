@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,9 @@ CLI::Option* add_output(CLI::App& app, std::string& target, const std::string& d
 
 /// Throws Error(io) unless `path` names a file that is there. `what` says what it should be, e.g. "a mesh or volume".
 void check_input(const std::string& path, const std::string& what);
+/// The same for formats that must be read from a file: throws Error(io) for pipes and devices too, which have no
+/// beginning to go back to and may keep us waiting for ever.
+void check_plain_input(const std::string& path, const std::string& what);
 /// Throws Error(io) when `path` plainly cannot be written: its folder is missing or closed to us, or it is a
 /// folder.
 void check_output(const std::string& path);
@@ -38,21 +42,20 @@ std::vector<std::uint8_t> read_bytes(const std::string& path);
 bool is_octree_data(const std::vector<std::uint8_t>& bytes);
 
 /// Saves an octree, as stage "write", with metadata that say which program, command, source and options made it.
-/// `source` is the input as typed. Returns the bytes written.
-std::uint64_t write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
-                           const Json& options);
-
-/// Tells what was written: one line, or with --json an object that starts with the same facts and ends with `more`.
-/// Nothing under --quiet.
-void report_written(const Session& session, const Octree& octree, const std::string& path, std::uint64_t file_bytes,
-                    const Json& more = Json::object());
+/// `source` is the input as typed. Then tells what was written: one line, or with --json an object that starts with the
+/// same facts and ends with `more`; `before` is printed first, even under --quiet, unless with --json; else nothing
+/// under --quiet. What it tells is measured before the file is put in place, so that an interrupt can come no later.
+void write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
+                  const Json& options, const Json& more = Json::object(), const std::string& before = {});
+/// Warns if a result holds nothing.
+void warn_if_empty(const Session& session, const Octree& octree);
 
 /// The name without its folders; "-" becomes "standard input".
 std::string base_name(const std::string& path);
 /// The suffix in lower case, e.g. ".stl"; ".nii.gz" counts as one.
 std::string suffix_of(const std::string& path);
-/// Bytes in a file; 0 for what is no plain file.
-std::uint64_t size_of(const std::string& path);
+/// Bytes in a file; none for what is no plain file.
+std::optional<std::uint64_t> size_of(const std::string& path);
 /// "1 voxel", "2,176 voxels".
 std::string counted(std::uint64_t number, const std::string& noun);
 /// 1234567 as 1,234,567.

@@ -1,27 +1,47 @@
 #include "interrupt.h"
 
+#include <array>
 #include <atomic>
 #include <csignal>
+
+#include "blackleaf/error.h"
+#include "file/stop_check.h"
 
 namespace blackleaf::cli {
 namespace {
 
-// A signal handler has no arguments of ours, so this one flag is global.
-std::atomic<bool> interrupt_came{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "the handler may only touch lock-free atomics");
+constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
+
+// A signal handler has no arguments of ours, so this one number is global.
+std::atomic<int> signal_that_came{0};
+static_assert(std::atomic<int>::is_always_lock_free, "the handler may only touch lock-free atomics");
 
 extern "C" void on_interrupt(int signal) {
-  interrupt_came.store(true);
-  std::signal(signal, SIG_DFL);
+  signal_that_came.store(signal);
+  struct sigaction action {};
+  action.sa_handler = SIG_DFL;
+  for (const int each : kSignals) sigaction(each, &action, nullptr);
 }
 
 }  // namespace
 
 void watch_for_interrupt() {
-  // Whoever started us with SIGINT ignored (nohup, a shell's background job) wants it ignored.
-  if (std::signal(SIGINT, on_interrupt) == SIG_IGN) std::signal(SIGINT, SIG_IGN);
+  for (const int signal : kSignals) {
+    struct sigaction action {
+    }, before{};
+    // Whoever started us with a signal ignored (nohup, a shell's background job) wants it ignored.
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) continue;
+    // No SA_RESTART: a read that waits for a pipe must come back to ask.
+    action.sa_handler = on_interrupt;
+    sigaction(signal, &action, nullptr);
+  }
+  detail::set_stop_check(check_interrupt);
 }
 
-bool interrupted() { return interrupt_came.load(); }
+int interrupt_signal() { return signal_that_came.load(); }
+
+void check_interrupt() {
+  if (interrupt_signal() != 0) throw Error(ErrorCode::cancelled, "interrupted");
+}
 
 }  // namespace blackleaf::cli

@@ -19,6 +19,8 @@ class MotionOptions {
 
   /// True iff any of them was given.
   bool given() const { return !rotations_.empty() || translation_ || matrix_ || about_; }
+  /// True iff one of those was given that can move anything; --about alone cannot.
+  bool moves() const { return !rotations_.empty() || translation_ || matrix_; }
   /// The motion X' = R (X - c) + c + T: all rotations in order, about c, then the translation. Reads the matrix file.
   /// Throws Error(bad_argument), and Error(io) or Error(bad_input) for the matrix file.
   Motion motion(const Octree& octree) const;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "blackleaf/measures.h"
 #include "commands.h"
 #include "files.h"
@@ -55,20 +57,23 @@ int run_move(Session& session) {
   check_octree_output(session, output);
   const Octree source = read_octree(session, input).octree;
   const Motion motion = motion_options.motion(source);
+  if (!motion_options.moves())
+    session.warn("no motion is given, so the solid stays where it is; give --rotate, --translate or --matrix");
   const Octree target =
       session.stage("move", [&](const Work& work) { return move(source, motion, leaving.choice(), work); });
+  warn_if_empty(session, target);
   Json options = motion_options.as_json(motion);
   options["leaving"] = leaving.name();
-  const std::uint64_t bytes = write_octree(session, target, output, input, options);
-
   Json more = Json::object();
+  std::string rows;
   if (stats && (session.json() || output != "-")) {
-    const Measures before = measure(source), after = measure(target);
+    const auto [before, after] =
+        session.stage("measure", [&](const Work&) { return std::pair(measure(source), measure(target)); });
     more["stats"] = {{"source", row(before)}, {"target", row(after)}};
     more["stats"]["target"]["peak_internal_nodes"] = after.internal_nodes;
-    if (!session.json()) print_out(table(before, after));
+    if (!session.json()) rows = table(before, after);
   }
-  report_written(session, target, output, bytes, more);
+  write_octree(session, target, output, input, options, more, rows);
   return kDone;
 }
 

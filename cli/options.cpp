@@ -98,7 +98,7 @@ Motion parse_rotation(const std::string& option, const std::string& text) {
 }
 
 Range parse_range(const std::string& option, const std::string& text) {
-  const std::string form = "write LO:HI, either side may be empty, like 300: or -100:200";
+  const std::string form = "write LO:HI, one side may be empty, like 300: or -100:200";
   const auto sides = split(text, ':');
   if (sides.size() != 2 || (sides[0].empty() && sides[1].empty())) refuse(option, text, "a range", form);
   Range range;

@@ -69,9 +69,7 @@ class HelpFormatter : public CLI::Formatter {
   static constexpr std::size_t kColumn = 30, kTextWidth = 68;
 };
 
-void check_interrupt() {
-  if (interrupted()) throw Error(ErrorCode::cancelled, "interrupted");
-}
+bool printed_something = false;
 
 }  // namespace
 
@@ -109,6 +107,13 @@ bool Session::parse() {
   } catch (const CLI::ParseError& error) {
     problem = error.what();
   }
+  // CLI11 has no clear words for an option that is there twice.
+  for (const CLI::Option* option : app_.get_options())
+    if (option->get_type_size() != 0 && option->get_expected_max() == 1 && option->count() > 1)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("{} is given {}, in blackleaf {}", option->get_name(),
+                              option->count() == 2 ? "twice" : fmt::format("{} times", option->count()), command_),
+                  "give it once");
   // CLI11 complains of a missing argument before it does of an unknown option, which is more often the reason.
   const std::vector<std::string> extras = app_.remaining();
   const auto option = std::find_if(extras.begin(), extras.end(),
@@ -141,7 +146,7 @@ Session::Stage::Stage(Session& session, std::string name)
   work_.threads = session.threads_.value_or(0);
   work_.progress = [bar = bar_](double fraction) {
     bar->show(fraction);
-    return !interrupted();
+    return interrupt_signal() == 0;
   };
 }
 
@@ -156,10 +161,13 @@ Session::Stage::~Stage() {
 }
 
 void print_out(const std::string& text) {
+  printed_something = printed_something || !text.empty();
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   throw Error(ErrorCode::io, "cannot write to standard output: " + std::generic_category().message(errno),
               "free some space or redirect it elsewhere");
 }
+
+bool printed() { return printed_something; }
 
 void print_out(const Json& object) { print_out(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"); }
 

@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "blackleaf/work.h"
+#include "interrupt.h"
 
 namespace blackleaf::cli {
 
@@ -36,11 +38,25 @@ class Session {
   bool quiet() const { return quiet_; }
 
   /// Runs `work(options)` as a stage of the given name, e.g. "read": its seconds are added up under that name, it shows
-  /// progress and can be interrupted. Returns what the function returns.
+  /// progress and can be interrupted: an interrupt is honoured when the stage ends at the latest. Returns what the
+  /// function returns.
   template <class Function>
   auto stage(const std::string& name, Function&& function) {
     const Stage running(*this, name);
-    return std::forward<Function>(function)(running.work());
+    if constexpr (std::is_void_v<std::invoke_result_t<Function, const Work&>>) {
+      std::forward<Function>(function)(running.work());
+      check_interrupt();
+    } else {
+      auto result = std::forward<Function>(function)(running.work());
+      check_interrupt();
+      return result;
+    }
+  }
+  /// The same for the stage "write", the last: what is in place when it ends stays there, and the run counts as done.
+  template <class Function>
+  auto write_stage(Function&& function) {
+    const Stage running(*this, "write");
+    return std::forward<Function>(function)();
   }
 
   /// One line on standard error, not under --quiet.
@@ -80,6 +96,8 @@ class Session {
 
 /// Writes text or bytes to standard output and makes sure they arrive. Throws Error(io).
 void print_out(const std::string& text);
+/// True iff anything went that way.
+bool printed();
 /// The object on one line.
 void print_out(const Json& object);
 

@@ -23,8 +23,8 @@ int run_translate(Session& session) {
   const Octree source = read_octree(session, input).octree;
   const Octree target =
       session.stage("move", [&](const Work& work) { return translate(source, by, leaving.choice(), work); });
-  const std::uint64_t bytes = write_octree(session, target, output, input, {{"by", by}, {"leaving", leaving.name()}});
-  report_written(session, target, output, bytes);
+  warn_if_empty(session, target);
+  write_octree(session, target, output, input, {{"by", by}, {"leaving", leaving.name()}});
   return kDone;
 }
 

@@ -13,16 +13,23 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
+#include "file/stop_check.h"
 
 namespace blackleaf::detail {
 namespace {
 
 namespace fs = std::filesystem;
 
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
 [[noreturn]] void cannot_write(const fs::path& path, int error) {
   const char* remedy = "";
   if (error == EACCES || error == EPERM || error == EROFS) remedy = "choose a folder that may be written to";
-  if (error == ENOENT || error == ENOTDIR) remedy = "create the folder first";
+  if (error == ENOENT || error == ENOTDIR) {
+    // Folders that the system makes up, like /proc, are there and take no files all the same.
+    std::error_code ignored;
+    remedy = fs::is_directory(folder_of(path), ignored) ? "choose another folder" : "create the folder first";
+  }
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) remedy = "make room or write elsewhere";
   if (error == ELOOP) remedy = "its symbolic links lead in a circle";
   if (error == EISDIR) remedy = "name a file in it";
@@ -43,13 +50,14 @@ fs::path follow_links(const fs::path& named) {
   cannot_write(named, ELOOP);
 }
 
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
-
 void write_all(int descriptor, std::span<const std::uint8_t> bytes, const fs::path& named) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0) {
-      if (errno == EINTR) continue;
+      if (errno == EINTR) {
+        check_for_stop();
+        continue;
+      }
       cannot_write(named, errno);
     }
     bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -98,6 +106,7 @@ void AtomicFile::commit() {
   if (descriptor_ < 0) fail(errno);
   if (mode_ && ::fchmod(descriptor_, *mode_) != 0) fail(errno);
   if (::fsync(descriptor_) != 0) fail(errno);
+  check_for_stop();
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   committed_ = true;
   // The new name is safe once the folder is on disk. Some file systems cannot sync folders; the file is whole anyhow.
@@ -115,6 +124,7 @@ void write_atomically(const fs::path& path, std::span<const std::uint8_t> bytes)
       int descriptor;
       ~Closer() { ::close(descriptor); }
     };
+    check_for_stop();
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) cannot_write(path, errno);
     const Closer closer{descriptor};

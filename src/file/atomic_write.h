@@ -15,7 +15,7 @@ namespace blackleaf::detail {
 ///
 ///   AtomicFile file(path);             // creates an empty temporary in the target's folder
 ///   file.write(bytes);                 // or: let a library write to file.temporary()
-///   file.commit();                     // fsync, rename, fsync of the folder
+///   file.commit();                     // fsync, the stop check (stop_check.h), rename, fsync of the folder
 ///
 /// Destruction without commit() removes the temporary. A target that is a symbolic link is followed: the link stays and
 /// what it points to is replaced. An existing target keeps its permissions. Folders, devices and pipes are refused, and

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
+#include "file/stop_check.h"
 
 namespace blackleaf::detail {
 
@@ -42,6 +43,7 @@ std::size_t InputFile::read_some(std::span<std::uint8_t> bytes) {
     const ssize_t got = ::read(descriptor_, bytes.data(), bytes.size());
     if (got >= 0) return static_cast<std::size_t>(got);
     if (errno != EINTR) fail(errno);
+    check_for_stop();
   }
 }
 

@@ -50,6 +50,9 @@ class RunCollector {
   }
 
   Octree octree() const {
+    if (line_ == 0)
+      throw Error(ErrorCode::bad_input, fmt::format("{}: is empty", name_),
+                  "write one \"count colour\" line for every run");
     int depth = 1;
     while (depth < kMaxDepth && std::uint64_t{1} << (3 * depth) < total_) ++depth;
     if (total_ != std::uint64_t{1} << (3 * depth))

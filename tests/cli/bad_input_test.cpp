@@ -1,4 +1,5 @@
 // What every command must refuse: one line, exit status 2, nothing left behind.
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/run_command.h"
@@ -143,6 +144,72 @@ TEST_F(BadInput, OutputsThatCannotBe) {
   std::filesystem::permissions(folder() / "closed",
                                std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   for (const auto& command : writers("closed/o")) refused(command, "may not be written to");
+}
+
+TEST_F(BadInput, PipesAreNotBuiltFrom) {
+  for (const char* name : {"pipe", "pipe.stl", "pipe.nrrd", "pipe.nii.gz", "pipe.runs"}) {
+    // Nobody writes to it: whoever opened it would wait for ever.
+    ASSERT_EQ(mkfifo((folder() / name).c_str(), 0600), 0);
+    refused({"build", name, "-o", "o.octree"}, "' is a device or a pipe");
+  }
+  refused({"build", "/dev/null", "-o", "o.octree"}, "'/dev/null' is a device or a pipe");
+  refused({"build", "-", "-o", "o.octree"}, "standard input cannot be built from; name a file");
+}
+
+TEST_F(BadInput, OptionsGivenTwice) {
+  make_stl("s.stl", {0, 0, 0}, {1, 1, 1});
+  refused({"build", "s.stl", "--depth", "2", "--depth", "3", "-o", "o.octree"}, "--depth is given twice");
+  refused({"build", "s.stl", "--depth", "2", "-o", "o.octree", "-o", "p.octree"}, "--output is given twice");
+  refused({"draw", "b.octree", "--view", "1,0,0", "--view", "0,1,0", "--view", "0,0,1", "-o", "o.svg"},
+          "--view is given 3 times");
+}
+
+TEST_F(BadInput, MessagesNameWhatToMend) {
+  make_stl("s.stl", {0, 0, 0}, {1, 1, 1});
+  make_stl("open.stl", {0, 0, 0}, {1, 1, 1}, true);
+  refused({"build", "open.stl", "-o", "o.octree"}, "blackleaf: open.stl: ");
+  refused({"build", "s.stl", "--voxel-size", "0.01", "--depth", "4", "-o", "o.octree"}, "blackleaf: s.stl: ");
+  refused({"build", "s.stl", "--fit", "1e-300", "-o", "o.octree"}, "--fit is 1e-300, which is less than any voxel");
+  refused({"draw", "b.octree", "--view", "1,2,3", "--size", "10x10", "-o", "o.svg"},
+          "make both sides longer than 20 mm");
+  write("empty.runs", "");
+  refused({"build", "empty.runs", "-o", "o.octree"}, "empty.runs: is empty");
+  if (std::filesystem::is_directory("/proc"))
+    refused({"translate", "b.octree", "1,0,0", "-o", "/proc/x"}, "choose another folder");
+}
+
+TEST_F(BadInput, ResultsThatSurpriseWarn) {
+  const auto warned = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const Result result = run(arguments);
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(lines(result.err), 1u) << result.err;
+    EXPECT_NE(result.err.find("warning: " + part), std::string::npos) << result.err;
+    std::vector<std::string> quiet = arguments;
+    quiet.emplace_back("--quiet");
+    done(quiet);
+  };
+  make_nrrd("v.nrrd", {2, 2, 2}, std::vector<int>(8, 0));
+  warned({"build", "v.nrrd", "-o", "o.octree"}, "no voxel is black");
+  warned({"translate", "b.octree", "100,0,0", "--clip", "-o", "o.octree"}, "no voxel is black");
+  warned({"move", "b.octree", "--translate", "100,0,0", "--clip", "-o", "o.octree"}, "no voxel is black");
+  warned({"move", "b.octree", "--about", "centre", "-o", "o.octree"}, "no motion is given");
+}
+
+TEST_F(BadInput, FarDisplacementsAreNotCutShort) {
+  for (const char* by : {"99999999999,0,0", "9223372036854775807,0,0"})
+    for (const char* leaving : {"", "--grow"}) {
+      std::vector<std::string> command = {"translate", "b.octree", by, "-o", "o.octree"};
+      if (*leaving != 0) command.emplace_back(leaving);
+      refused(command, "it is moved by more than 4194304 voxels along +x");
+    }
+  refused({"translate", "b.octree", "0,-9223372036854775808,5000000", "-o", "o.octree"},
+          "more than 4194304 voxels along -y, more than 4194304 voxels along +z");
+}
+
+TEST_F(BadInput, WhatIsNoFileHasNoSize) {
+  EXPECT_EQ(done({"translate", "b.octree", "1,0,0", "-o", "/dev/null"}).out.find("byte"), std::string::npos);
+  EXPECT_TRUE(done({"translate", "b.octree", "1,0,0", "-o", "/dev/null", "--json"}).json()["file_bytes"].is_null());
 }
 
 TEST_F(BadInput, NamesWithLineBreaksStillMakeOneLine) { refused({"info", "two\nlines"}, "two lines"); }

@@ -98,7 +98,7 @@ TEST_F(BuildCommand, VolumeByRangeAndLabel) {
   EXPECT_EQ(volume({"--range=-5:0"}), 1);
   EXPECT_EQ(volume({"--label", "13"}), 1);
   EXPECT_EQ(volume({"--label", "0"}), 1);
-  EXPECT_EQ(volume({"--label", "-1"}), 0);
+  EXPECT_EQ(volume({"--label", "-1", "--quiet"}), 0);
 }
 
 TEST_F(BuildCommand, VolumeInADeeperUniverseCornerOrCentre) {

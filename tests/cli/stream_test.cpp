@@ -42,7 +42,18 @@ Octree noise() {
   });
 }
 
-TEST_F(Streams, InterruptLeavesNothing) {
+// Sends the signal while the program reads an octree from standard input; the rest of the octree follows.
+class Interrupts : public CliTest {
+ protected:
+  void interrupt(std::vector<std::string> arguments, int signal_number) const;
+};
+
+void Interrupts::interrupt(std::vector<std::string> arguments, int signal_number) const {
+  SCOPED_TRACE(testing::PrintToString(arguments) + " signal " + std::to_string(signal_number));
+  arguments.insert(arguments.begin(), "blackleaf");
+  std::vector<char*> argv;
+  for (std::string& word : arguments) argv.push_back(word.data());
+  argv.push_back(nullptr);
   const std::vector<std::uint8_t> bytes = to_bytes(noise());
   constexpr std::size_t kMoreThanAPipeHolds = 1 << 17;
   ASSERT_GT(bytes.size(), kMoreThanAPipeHolds);
@@ -58,7 +69,7 @@ TEST_F(Streams, InterruptLeavesNothing) {
     signal(SIGPIPE, SIG_DFL);
     dup2(input[0], 0);
     dup2(err_file, 2);
-    execl(BLACKLEAF_PROGRAM, "blackleaf", "translate", "-", "1,0,0", "--clip", "-o", "o.octree", nullptr);
+    execv(BLACKLEAF_PROGRAM, argv.data());
     _exit(126);
   }
   close(input[0]);
@@ -72,18 +83,63 @@ TEST_F(Streams, InterruptLeavesNothing) {
   };
   // Once more than a pipe holds is gone, the program is reading, so it watches for signals; it waits for the rest.
   ASSERT_TRUE(send(0, kMoreThanAPipeHolds));
-  ASSERT_EQ(kill(child, SIGINT), 0);
-  ASSERT_TRUE(send(kMoreThanAPipeHolds, bytes.size()));
+  ASSERT_EQ(kill(child, signal_number), 0);
+  // The program may be gone before it has read everything.
+  send(kMoreThanAPipeHolds, bytes.size());
   close(input[1]);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_EQ(WEXITSTATUS(status), 128 + signal_number);
   std::ifstream file(err);
   std::string message;
   std::getline(file, message);
   EXPECT_EQ(message, "blackleaf: interrupted; nothing was written");
   EXPECT_EQ(files(), std::vector<std::string>{});
+}
+
+TEST_F(Interrupts, LeaveNothing) {
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+    interrupt({"translate", "-", "1,0,0", "--clip", "-o", "o.octree"}, signal_number);
+    interrupt({"export", "-", "-o", "o.nii.gz"}, signal_number);
+    interrupt({"export", "-", "-o", "-"}, signal_number);
+    interrupt({"draw", "-", "--view", "1,2,3", "-o", "o.svg"}, signal_number);
+    interrupt({"info", "-"}, signal_number);
+  }
+}
+
+// The signal comes while the output is made under its temporary name, or just before or after: whatever the moment, the
+// output is there and the exit status 0, or neither, and the temporary is gone.
+TEST_F(Interrupts, WhileWritingLeaveAllOrNothing) {
+  save(noise(), folder() / "n.octree");
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP})
+    for (const char* output : {"o.nii.gz", "o.nrrd", "o.ply", "o.runs"}) {
+      SCOPED_TRACE(std::string(output) + " signal " + std::to_string(signal_number));
+      const std::string err = folder().parent_path() / "err";
+      const pid_t child = fork();
+      if (child == 0) {
+        const int err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        if (chdir(folder().c_str()) != 0) _exit(125);
+        dup2(err_file, 2);
+        execl(BLACKLEAF_PROGRAM, "blackleaf", "export", "n.octree", "-o", output, "--quiet", nullptr);
+        _exit(126);
+      }
+      int status = 0;
+      bool ended = false;
+      while (files().size() < 2 && !ended) ended = waitpid(child, &status, WNOHANG) == child;
+      if (!ended) {
+        kill(child, signal_number);
+        ASSERT_EQ(waitpid(child, &status, 0), child);
+      }
+      ASSERT_TRUE(WIFEXITED(status));
+      if (WEXITSTATUS(status) == 0) {
+        EXPECT_EQ(files(), (std::vector<std::string>{"n.octree", output}));
+      } else {
+        EXPECT_EQ(WEXITSTATUS(status), 128 + signal_number);
+        EXPECT_EQ(files(), std::vector<std::string>{"n.octree"});
+      }
+      std::filesystem::remove(folder() / output);
+    }
 }
 
 TEST_F(Streams, FullOutputIsReported) {
