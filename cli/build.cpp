@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <utility>
@@ -107,6 +109,22 @@ auto naming(const std::string& file, Function&& function) {
   }
 }
 
+// What is neither a volume nor a run stream by its suffix is read as a mesh. If it cannot be one by its suffix either,
+// the message lists all that could have been meant.
+TriangleMesh read_as_mesh(const std::string& input) {
+  constexpr std::array<const char*, 7> kMeshes = {".stl", ".obj", ".ply", ".off", ".gltf", ".glb", ".3mf"};
+  try {
+    return read_mesh(input);
+  } catch (const Error& error) {
+    const bool known = std::find(kMeshes.begin(), kMeshes.end(), suffix_of(input)) != kMeshes.end();
+    const std::string what = error.what();
+    if (known || error.code() != ErrorCode::bad_input) throw;
+    throw Error(
+        error.code(), what.substr(0, what.find("; use ")),
+        "use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF), a volume (NRRD, NIfTI, MetaImage) or a run stream (.runs)");
+  }
+}
+
 Octree from_mesh(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
   refuse_options(o.input, "a mesh",
                  {{o.range.has_value(), "--range"}, {o.label.has_value(), "--label"}, {o.centre, "--centre"}});
@@ -123,7 +141,7 @@ Octree from_mesh(Session& session, const BuildOptions& o, const std::optional<Oc
     throw Error(ErrorCode::bad_argument, fmt::format("--fit is {}, which is less than any voxel", *o.fit),
                 "give a fraction above 0 and at most 1, like 0.75");
 
-  const TriangleMesh mesh = session.stage("read", [&](const Work&) { return read_mesh(o.input); });
+  const TriangleMesh mesh = session.stage("read", [&](const Work&) { return read_as_mesh(o.input); });
   MeshPlacement placement;
   if (like) {
     placement = {like->depth(), like->frame()};
