@@ -384,7 +384,13 @@ void check_nifti_header(const fs::path& path) {
       finite(76, 1, "qform");
       finite(256, 6, "qform");
     }
-    if (header.get<std::int16_t>(254) > 0) finite(280, 12, "sform");
+    if (header.get<std::int16_t>(254) > 0) {
+      finite(280, 12, "sform");
+      for (std::size_t i = 0; i < shaped; ++i)
+        if (const auto part = [&](std::size_t row) { return header.get<float>(280 + 16 * row + 4 * i); };
+            part(0) == 0 && part(1) == 0 && part(2) == 0 && header.get<std::int16_t>(252) <= 0)
+          refuse(path, "its axes do not span space: one of them has no length (sform)", kMendHeader);
+    }
   }
   std::uint64_t ignored = 0;
   nifti_location(path, ignored);
