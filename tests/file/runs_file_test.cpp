@@ -59,7 +59,7 @@ TEST(RunsFile, ErrorsNameTheLine) {
   for (const char* line : {"x", "3", "3 x", "x 0", "-3 0", "3 -1", "3.5 0", "3 0 0", "3 4294967296",
                            "99999999999999999999 1", "3,0", "0x3 0", "+3 0"})
     expect_refused("1 0\n\n" + std::string(line) + "\n4 1\n", {"a.runs: line 3 is not \"count colour\""});
-  expect_refused("", {"add up to 0"});
+  expect_refused("", {"a.runs: is empty"});
   expect_refused("9 0\n", {"line 1", "add up to 9", "not 8^n"});
   expect_refused("8 0\n1 1\n", {"line 2", "add up to 9"});
   expect_refused("1 0\n", {"add up to 1"});
