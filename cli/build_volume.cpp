@@ -1,0 +1,75 @@
+// blackleaf build: voxel volumes.
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "blackleaf/move.h"
+#include "blackleaf/volume_file.h"
+#include "build.h"
+#include "files.h"
+#include "options.h"
+
+namespace blackleaf::cli {
+namespace {
+
+// The octree in another universe, when the two differ by a shift of whole voxels.
+Octree placed_in(const Octree& octree, const Octree& universe, const std::string& input, const std::string& like) {
+  const Frame& from = octree.frame();
+  const Frame& to = universe.frame();
+  const Eigen::Vector3d corner = to.axes.fullPivLu().solve(from.origin - to.origin);
+  const Eigen::Vector3d whole = corner.array().round();
+  // Geometry in file headers is rounded; what is left of a voxel after that must be far below one.
+  constexpr double kTolerance = 1e-3;
+  const bool fits = (corner - whole).cwiseAbs().maxCoeff() <= kTolerance && whole.cwiseAbs().maxCoeff() < 0x1p40 &&
+                    Frame{to.origin, from.axes, from.unit}.same_as(to);
+  if (!fits)
+    throw Error(ErrorCode::bad_input,
+                fmt::format("the voxels of '{}' are not those of '{}' shifted by whole voxels", input, like),
+                "leave --like out, or resample the volume");
+  const std::array<std::int64_t, 3> by = {std::llround(whole[0]), std::llround(whole[1]), std::llround(whole[2])};
+  return translate(octree, by).with_frame(to);
+}
+
+}  // namespace
+
+void declare_volume_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
+  const std::string volumes = "Options for volumes";
+  CLI::Option* range = add_text(app, "--range", o.range, "LO:HI",
+                                "values inside, ends included; either may be empty (default: any value above 0)");
+  CLI::Option* label = app.add_option_function<std::string>(
+                              "--label", [&o](const std::string& text) { o.label = parse_number("--label", text); },
+                              "exactly this value is inside")
+                           ->type_name("L");
+  range->group(volumes)->excludes(label);
+  label->group(volumes);
+  app.add_flag("--centre", o.centre, "centre the volume in the universe instead of placing it at the corner")
+      ->group(volumes)
+      ->excludes(like);
+}
+
+Octree build_volume(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
+  refuse_options(
+      o.input, "a volume",
+      {{o.fit.has_value(), "--fit"}, {o.voxel_size.has_value(), "--voxel-size"}, {o.rule.has_value(), "--rule"}});
+  VolumeOptions options;
+  if (o.range) {
+    const Range range = parse_range("--range", *o.range);
+    options.low = range.low;
+    options.high = range.high;
+    facts["range"] = *o.range;
+  }
+  options.label = o.label;
+  if (o.label) facts["label"] = *o.label;
+  options.depth = like ? like->depth() : o.depth.value_or(0);
+  options.centre = o.centre;
+  if (o.centre) facts["centre"] = true;
+  if (like) facts["like"] = base_name(*o.like);
+  // The volume is built while it is read, so this is one stage.
+  Octree octree = session.stage("build", [&](const Work& work) { return read_volume(o.input, options, work); });
+  facts["depth"] = octree.depth();
+  if (like) octree = placed_in(octree, *like, o.input, *o.like);
+  return octree;
+}
+
+}  // namespace blackleaf::cli
