@@ -5,17 +5,18 @@
 #include <filesystem>
 
 #include "io/image_io.h"
+#include "io/value_location.h"
 
 namespace blackleaf::detail {
 
-/// Throws Error(bad_input) when the header is not of the format or has sizes, axes, types or places of values that make
-/// no sense, or when a data file that it names cannot be read. To be asked before ITK sees the file: its libraries
-/// answer some of these with an endless loop, with abort(), or with values from nowhere.
-void check_header(const std::filesystem::path& path, ImageFormat format);
+/// Where the values are. Throws Error(bad_input) when the header is not of the format or has sizes, axes, types or
+/// places of values that make no sense, or when a data file that it names cannot be read. To be asked before ITK sees
+/// the file: its libraries answer some of these with an endless loop, with abort(), or with values from nowhere.
+ValueLocation check_header(const std::filesystem::path& path, ImageFormat format);
 
-/// Throws Error(bad_input) when a volume of `voxels` values, `bytes` in memory, cannot be in the file (or in the data
-/// file that it names): raw values need their full length, compressed ones at least a thousandth of it. Throws
-/// Error(io) when a data file that the header names cannot be read.
-void check_believable(const std::filesystem::path& path, ImageFormat format, std::uint64_t voxels, std::uint64_t bytes);
+/// Throws Error(bad_input) when `voxels` values, `bytes` as they are stored, cannot be there: raw values need their
+/// full length, compressed ones at least a thousandth of it.
+void check_believable(const std::filesystem::path& path, const ValueLocation& location, std::uint64_t voxels,
+                      std::uint64_t bytes);
 
 }  // namespace blackleaf::detail

@@ -1,0 +1,262 @@
+#include "io/volume_source.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "blackleaf/error.h"
+#include "file/input_file.h"
+#include "io/header_text.h"
+#include "io/inflating_file.h"
+#include "io/volume_header.h"
+#include "io/volume_shape.h"
+
+namespace blackleaf::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The bytes of a file's values, in order.
+class Bytes {
+ public:
+  Bytes() = default;
+  virtual ~Bytes() = default;
+  Bytes(const Bytes&) = delete;
+  Bytes& operator=(const Bytes&) = delete;
+  virtual void read(std::span<std::uint8_t> bytes) = 0;
+  /// After the last value: how many more bytes there are, counted up to `most`.
+  virtual std::uint64_t surplus(std::uint64_t most) = 0;
+};
+
+class RawBytes : public Bytes {
+ public:
+  RawBytes(const ValueLocation& location, std::uint64_t length)
+      : file_(location.file),
+        at_(location.offset + (location.at_end ? location.available - length : 0)),
+        end_(location.offset + location.available) {}
+  void read(std::span<std::uint8_t> bytes) override {
+    file_.read_at(at_, bytes);
+    at_ += bytes.size();
+  }
+  std::uint64_t surplus(std::uint64_t most) override { return std::min(end_ - at_, most); }
+
+ private:
+  const InputFile file_;
+  std::uint64_t at_, end_;
+};
+
+class PackedBytes : public Bytes {
+ public:
+  PackedBytes(const fs::path& path, const ValueLocation& location)
+      : file_(path, location.file, location.offset, location.available) {
+    std::vector<std::uint8_t> scratch(std::size_t{1} << 16);
+    for (std::uint64_t left = location.before; left > 0;) {
+      const auto part =
+          std::span(scratch).first(static_cast<std::size_t>(std::min<std::uint64_t>(left, scratch.size())));
+      file_.read(part);
+      left -= part.size();
+    }
+  }
+  void read(std::span<std::uint8_t> bytes) override { file_.read(bytes); }
+  std::uint64_t surplus(std::uint64_t most) override { return file_.finish(most); }
+
+ private:
+  InflatingFile file_;
+};
+
+template <class T>
+void swap_bytes(void* values, std::size_t count) {
+  auto* const bytes = static_cast<unsigned char*>(values);
+  for (std::size_t i = 0; i < count; ++i) std::reverse(bytes + i * sizeof(T), bytes + (i + 1) * sizeof(T));
+}
+
+void swap_bytes(void* values, std::size_t count, std::size_t size) {
+  switch (size) {
+    case 2:
+      return swap_bytes<std::uint16_t>(values, count);
+    case 4:
+      return swap_bytes<std::uint32_t>(values, count);
+    case 8:
+      return swap_bytes<std::uint64_t>(values, count);
+    default:
+      return;
+  }
+}
+
+// NIfTI's values: a float for every type but double, the sum and the product those of doubles (as ITK has it).
+template <class Stored, class Value>
+void rescale(const void* stored, void* values, std::size_t count, double slope, double intercept) {
+  const auto* const from = static_cast<const Stored*>(stored);
+  auto* const to = static_cast<Value*>(values);
+  for (std::size_t i = 0; i < count; ++i)
+    to[i] = static_cast<Value>(static_cast<double>(static_cast<Value>(from[i])) * slope + intercept);
+}
+
+using Rescale = void (*)(const void*, void*, std::size_t, double, double);
+
+Rescale rescale_from(Component stored) {
+  switch (stored) {
+    case Component::u8:
+      return rescale<std::uint8_t, float>;
+    case Component::i8:
+      return rescale<std::int8_t, float>;
+    case Component::u16:
+      return rescale<std::uint16_t, float>;
+    case Component::i16:
+      return rescale<std::int16_t, float>;
+    case Component::u32:
+      return rescale<std::uint32_t, float>;
+    case Component::i32:
+      return rescale<std::int32_t, float>;
+    case Component::u64:
+      return rescale<std::uint64_t, float>;
+    case Component::i64:
+      return rescale<std::int64_t, float>;
+    case Component::f32:
+      return rescale<float, float>;
+    case Component::f64:
+      return rescale<double, double>;
+  }
+  return nullptr;
+}
+
+std::uint64_t slice_values(const ImageInformation& information) {
+  const auto size = solid_size(information);
+  return static_cast<std::uint64_t>(size[0] * size[1]);
+}
+
+// Values that stand one behind the other, in the file or once unpacked.
+class DirectSource : public VolumeSource {
+ public:
+  DirectSource(fs::path path, const ValueLocation& location, ImageInformation information)
+      : path_(std::move(path)),
+        information_(std::move(information)),
+        slice_(slice_values(information_)),
+        left_(solid_size(information_)[2]),
+        swapped_(location.swapped),
+        stored_(location.stored.value_or(*information_.component)),
+        slope_(location.slope),
+        intercept_(location.intercept),
+        scaled_(slope_ != 1 || intercept_ != 0 || stored_ != *information_.component) {
+    if (location.packing == Packing::compressed)
+      bytes_ = std::make_unique<PackedBytes>(path_, location);
+    else
+      bytes_ = std::make_unique<RawBytes>(location, slice_bytes() * static_cast<std::uint64_t>(left_));
+  }
+
+  const ImageInformation& information() const override { return information_; }
+
+  void read(std::int64_t slices, void* values) override {
+    const std::uint64_t count = slice_ * static_cast<std::uint64_t>(slices);
+    if (scaled_)
+      read_scaled(count, static_cast<std::uint8_t*>(values));
+    else
+      read_stored(count, static_cast<std::uint8_t*>(values));
+    left_ -= slices;
+    if (left_ == 0) check_end();
+  }
+
+ private:
+  std::uint64_t slice_bytes() const { return slice_ * bytes_of(stored_); }
+
+  void read_stored(std::uint64_t count, std::uint8_t* values) {
+    bytes_->read({values, count * bytes_of(stored_)});
+    if (swapped_) swap_bytes(values, count, bytes_of(stored_));
+  }
+
+  void read_scaled(std::uint64_t count, std::uint8_t* values) {
+    constexpr std::uint64_t kAtOnce = 1 << 14;
+    scratch_.resize(kAtOnce * bytes_of(stored_));
+    const std::size_t size = bytes_of(*information_.component);
+    for (std::uint64_t done = 0; done < count; done += kAtOnce) {
+      const std::uint64_t part = std::min(kAtOnce, count - done);
+      read_stored(part, scratch_.data());
+      rescale_from(stored_)(scratch_.data(), values + done * size, part, slope_, intercept_);
+    }
+  }
+
+  // Padding behind the values is common; a whole slice of them more is a header that is wrong.
+  void check_end() {
+    if (bytes_->surplus(slice_bytes()) >= slice_bytes())
+      refuse(path_,
+             fmt::format("its header tells of {} slices, but there are values for more", solid_size(information_)[2]),
+             "mend the size in its header");
+  }
+
+  fs::path path_;
+  ImageInformation information_;
+  std::uint64_t slice_;  // values of a slice
+  std::int64_t left_;    // slices
+  bool swapped_;
+  Component stored_;
+  double slope_, intercept_;
+  bool scaled_;
+  std::unique_ptr<Bytes> bytes_;
+  std::vector<std::uint8_t> scratch_;
+};
+
+// Values that only the format's library finds: all of them are read at once.
+class WholeSource : public VolumeSource {
+ public:
+  WholeSource(fs::path path, std::unique_ptr<ImageReader> reader)
+      : path_(std::move(path)), reader_(std::move(reader)), information_(reader_->information()) {}
+
+  const ImageInformation& information() const override { return information_; }
+
+  void read(std::int64_t slices, void* values) override {
+    const std::uint64_t slice = slice_values(information_) * bytes_of(*information_.component);
+    if (!values_) {
+      const std::uint64_t bytes = slice * static_cast<std::uint64_t>(solid_size(information_)[2]);
+      values_.reset(static_cast<std::uint8_t*>(std::calloc(bytes, 1)));
+      if (!values_)
+        refuse(path_, fmt::format("needs {} bytes of memory, more than there are", bytes), "crop or resample it first");
+      reader_->read(values_.get());
+    }
+    const std::uint64_t length = slice * static_cast<std::uint64_t>(slices);
+    std::memcpy(values, values_.get() + at_, length);
+    at_ += length;
+  }
+
+ private:
+  struct Free {
+    void operator()(std::uint8_t* memory) const { std::free(memory); }
+  };
+  fs::path path_;
+  std::unique_ptr<ImageReader> reader_;
+  ImageInformation information_;
+  std::unique_ptr<std::uint8_t[], Free> values_;
+  std::uint64_t at_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<VolumeSource> open_volume(const fs::path& path) {
+  const auto format = image_format(path);
+  if (const InputFile file(path); !file.is_regular())
+    throw Error(ErrorCode::io, path.string() + ": is not an ordinary file", "copy it to one first");
+  else if (!format)
+    refuse(path, "has no suffix of a volume", "use .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .hdr or .img");
+  else if (file.size() == 0)
+    refuse(path, "is empty", kAgain);
+  ValueLocation location = check_header(path, *format);
+  auto reader = std::make_unique<ImageReader>(path, *format);
+  const ImageInformation& information = reader->information();
+  check_shape(path, information);
+  const Component stored = location.stored.value_or(*information.component);
+  const auto size = solid_size(information);
+  const auto voxels = static_cast<std::uint64_t>(size[0] * size[1] * size[2]);  // at most 2^60
+  check_believable(path, location, voxels, voxels * bytes_of(stored));
+  // What is scaled becomes a float, or stays a double.
+  const Component scaled = stored == Component::f64 ? Component::f64 : Component::f32;
+  if (*information.component != stored && *information.component != scaled) location.direct = false;
+  if (location.direct) return std::make_unique<DirectSource>(path, location, information);
+  return std::make_unique<WholeSource>(path, std::move(reader));
+}
+
+}  // namespace blackleaf::detail
