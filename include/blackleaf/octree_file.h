@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "blackleaf/label_map.h"
 #include "blackleaf/octree.h"
 
 namespace blackleaf {
@@ -19,10 +21,15 @@ void save(const Octree& octree, const std::filesystem::path& path, const std::st
 /// The same bytes in memory.
 std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& metadata = "{}");
 
+/// The same for a label map: the file keeps every voxel's label.
+void save(const LabelMap& labels, const std::filesystem::path& path, const std::string& metadata = "{}");
+std::vector<std::uint8_t> to_bytes(const LabelMap& labels, const std::string& metadata = "{}");
+
 struct OctreeFile {
-  Octree octree;
+  Octree octree;         // with labels: the solid of all labels but 0
   std::string metadata;  // JSON object
   std::uint64_t file_bytes = 0;
+  std::optional<LabelMap> labels;  // if the file was saved from a label map
 };
 /// Reads and checks everything: magic, version, checksums, counts; trusts no length. Throws Error(io) when the file
 /// cannot be read, Error(bad_input) that names the first thing wrong.

@@ -9,9 +9,12 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
+#include "blackleaf/label_map.h"
 #include "blackleaf/octree_file.h"
 #include "blackleaf/runs.h"
 #include "file/atomic_write.h"
+#include "file/file_header.h"
+#include "file/label_chunks.h"
 #include "file/octree_format.h"
 
 namespace blackleaf {
@@ -26,6 +29,11 @@ constexpr int kCompressionLevel = 1;
 
 struct FreeContext {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+};
+
+struct OldEntry {
+  int kind;
+  std::uint64_t runs, raw_bytes, stored_bytes, checksum;
 };
 
 // Compresses chunk after chunk: one zstd frame each, with its content's size, on one thread, so that the bytes depend
@@ -67,7 +75,7 @@ class ChunkWriter {
     while (count > 0) {
       const std::uint64_t part = std::min(count, left_);
       if (part == chunk_voxels_) {
-        entries_.push_back({black ? ChunkKind::black : ChunkKind::white, 0, 0, 0, 0});
+        entries_.push_back({black ? true : false, 0, 0, 0, 0});
       } else {
         if (left_ == chunk_voxels_ && !black) put(0);
         put(part);
@@ -78,7 +86,7 @@ class ChunkWriter {
     }
   }
 
-  const std::vector<ChunkEntry>& entries() const { return entries_; }
+  const std::vector<OldEntry>& entries() const { return entries_; }
   const Bytes& stored() const { return stored_; }
 
  private:
@@ -90,7 +98,7 @@ class ChunkWriter {
   void finish_chunk() {
     const std::size_t at = stored_.size();
     const std::size_t size = compressor_.append(raw_, stored_);
-    entries_.push_back({ChunkKind::runs, runs_, raw_.size(), size, XXH3_64bits(stored_.data() + at, size)});
+    entries_.push_back({2, runs_, raw_.size(), size, XXH3_64bits(stored_.data() + at, size)});
     raw_.clear();
     runs_ = 0;
     left_ = chunk_voxels_;
@@ -101,7 +109,7 @@ class ChunkWriter {
   std::uint64_t runs_ = 0;  // counts in raw_
   Bytes raw_;               // varints of the current chunk
   Bytes stored_;            // all finished chunks
-  std::vector<ChunkEntry> entries_;
+  std::vector<OldEntry> entries_;
   Compressor compressor_;
 };
 
@@ -129,11 +137,11 @@ std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& meta
   for_each_run(octree, [&](std::uint64_t count, bool black) { chunks.add(count, black); });
 
   const std::size_t table = table_at(frame.unit.size(), metadata.size());
-  const std::size_t checksum_at = table + chunks.entries().size() * kEntryBytes;
+  const std::size_t checksum_at = table + chunks.entries().size() * entry_bytes(1);
   const std::size_t header_bytes = checksum_at + kChecksumBytes;
   Bytes bytes(header_bytes, 0);
   std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
-  put_at(bytes, kVersionAt, kVersion);
+  put_at(bytes, kVersionAt, std::uint32_t{1});
   put_at(bytes, kDepthAt, static_cast<std::uint8_t>(octree.depth()));
   put_at(bytes, kHeaderBytesAt, static_cast<std::uint32_t>(header_bytes));
   put_at(bytes, kChunksAt, static_cast<std::uint32_t>(chunks.entries().size()));
@@ -144,13 +152,13 @@ std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& meta
   std::memcpy(bytes.data() + kFixedBytes, frame.unit.data(), frame.unit.size());
   std::memcpy(bytes.data() + kFixedBytes + frame.unit.size(), metadata.data(), metadata.size());
   std::size_t at = table;
-  for (const ChunkEntry& entry : chunks.entries()) {
+  for (const OldEntry& entry : chunks.entries()) {
     put_at(bytes, at, static_cast<std::uint8_t>(entry.kind));
     put_at(bytes, at + 8, entry.runs);
     put_at(bytes, at + 16, entry.raw_bytes);
     put_at(bytes, at + 24, entry.stored_bytes);
     put_at(bytes, at + 32, entry.checksum);
-    at += kEntryBytes;
+    at += entry_bytes(1);
   }
   put_at(bytes, checksum_at, std::uint64_t{XXH3_64bits(bytes.data(), checksum_at)});
   bytes.insert(bytes.end(), chunks.stored().begin(), chunks.stored().end());
@@ -159,6 +167,35 @@ std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& meta
 
 void save(const Octree& octree, const std::filesystem::path& path, const std::string& metadata) {
   detail::write_atomically(path, to_bytes(octree, metadata));
+}
+
+std::vector<std::uint8_t> to_bytes(const LabelMap& labels, const std::string& metadata) {
+  const std::uint64_t voxels = chunk_voxels(labels.depth());
+  std::vector<Chunk> chunks(chunk_count(labels.depth()));
+  std::vector<Run> runs;  // of the current chunk
+  std::size_t chunk = 0;
+  std::uint64_t left = voxels;  // of the current chunk
+  for (std::size_t i = 0; i < labels.run_count(); ++i) {
+    for (std::uint64_t rest = labels.count(i); rest > 0;) {
+      const std::uint64_t part = std::min(rest, left);
+      runs.push_back({part, labels.labels()[i]});
+      rest -= part;
+      left -= part;
+      if (left > 0) continue;
+      if (runs.size() == 1)
+        chunks[chunk].colour = runs[0].colour;
+      else
+        chunks[chunk] = {ChunkKind::coded, 0, detail::encode_labels(runs)};
+      ++chunk;
+      runs.clear();
+      left = voxels;
+    }
+  }
+  return file_bytes(Content::labels, labels.depth(), labels.frame(), metadata, chunks);
+}
+
+void save(const LabelMap& labels, const std::filesystem::path& path, const std::string& metadata) {
+  detail::write_atomically(path, to_bytes(labels, metadata));
 }
 
 }  // namespace blackleaf

@@ -115,7 +115,7 @@ TEST(OctreeDamage, FlipsWithChecksumsMended) {
     Bytes bytes = whole;
     for (int flips = 1 + i % 3; flips > 0; --flips)
       bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
-    const std::size_t entry = header - 8 - kEntryBytes;
+    const std::size_t entry = header - 8 - entry_bytes(1);
     put(bytes, entry + 32, std::uint64_t{XXH3_64bits(bytes.data() + header, bytes.size() - header)});
     put(bytes, header - 8, std::uint64_t{XXH3_64bits(bytes.data(), header - 8)});
     try {
@@ -170,8 +170,8 @@ TEST(OctreeDamage, KindsOfFilesThatAreNotOctrees) {
   expect_refused(replaced("\n", "\r"), {"line ends"});
   expect_refused(replaced("\x89", "\xC2\x89"), {"character set"});
   expect_refused(replaced("\x89", "\x09"), {"eighth bits"});
-  put(bytes, kVersionAt, std::uint32_t{2});
-  expect_refused(bytes, {"format version 2", "reads version 1", "newer"});
+  put(bytes, kVersionAt, std::uint32_t{3});
+  expect_refused(bytes, {"format version 3", "reads versions 1 to 2", "newer"});
 }
 
 TEST(OctreeDamage, HostileHeaders) {
@@ -191,8 +191,8 @@ TEST(OctreeDamage, HostileHeaders) {
   };
   expect_refused(with(kDepthAt, std::uint8_t{0}), {"depth 0"});
   expect_refused(with(kDepthAt, std::uint8_t{21}), {"depth 21"});
-  expect_refused(with(kReservedAt, std::uint8_t{1}), {"reserved byte 13"});
-  expect_refused(with(kReservedAt + 2, std::uint8_t{1}), {"reserved byte 15"});
+  expect_refused(with(kContentAt, std::uint8_t{1}), {"contents of unknown kind 1"});
+  expect_refused(with(kReservedAt + 1, std::uint8_t{1}), {"reserved byte 15"});
   expect_refused(unsealed(kHeaderBytesAt, std::uint32_t{0}), {"header: a length of 0"});
   expect_refused(unsealed(kHeaderBytesAt, ~std::uint32_t{0}), {"header: a length of 4294967295"});
   expect_refused(with(kChunksAt, ~std::uint32_t{0}), {"4294967295 chunks"});

@@ -113,7 +113,37 @@ TEST(OctreeFile, ChunkBordersDependOnTheDepthAlone) {
   EXPECT_EQ(chunk_count(9), 8u);
   for (int depth = 10; depth <= 20; ++depth) EXPECT_EQ(chunk_count(depth), 64u);
   // One colour takes a table entry and no contents.
-  EXPECT_EQ(to_bytes(Octree(20)).size(), kFixedBytes + 8 + 64 * kEntryBytes + kChecksumBytes);
+  EXPECT_EQ(to_bytes(Octree(20)).size(), kFixedBytes + 8 + 64 * entry_bytes(1) + kChecksumBytes);
+}
+
+void expect_round_trip(const LabelMap& labels) {
+  const auto bytes = to_bytes(labels, "{\"labels\": true}");
+  const OctreeFile file = from_bytes(bytes);
+  ASSERT_TRUE(file.labels.has_value());
+  EXPECT_TRUE(*file.labels == labels);
+  EXPECT_TRUE(same_bits(file.labels->frame(), labels.frame()));
+  EXPECT_TRUE(file.octree == octree_from_labels(labels));
+  EXPECT_EQ(file.metadata, "{\"labels\": true}");
+  EXPECT_EQ(to_bytes(*file.labels, file.metadata), bytes);
+}
+
+TEST(OctreeFile, RoundTripsOfLabelMaps) {
+  std::mt19937_64 random(20261122);
+  for (int depth = 1; depth <= 20; ++depth)
+    for (int i = 0; i < 20; ++i) {
+      SCOPED_TRACE(testing::Message() << "depth " << depth << " case " << i);
+      const std::uint64_t all = std::uint64_t{1} << (3 * depth);
+      const int bits = 1 + static_cast<int>(random() % static_cast<std::uint64_t>(3 * depth));
+      const std::uint32_t labels = i % 3 == 0 ? 2u : i % 3 == 1 ? 200u : 0xFFFFFFFFu;
+      LabelMapBuilder builder(depth);
+      for (int k = 0; k < 2000 && builder.end() < all; ++k)
+        builder.add(std::min(all - builder.end(), random() % (std::uint64_t{1} << bits)),
+                    static_cast<std::uint32_t>(random() % labels));
+      builder.add(all - builder.end(), i % 2 ? 0xFFFFFFFFu : 0);
+      expect_round_trip(builder.finish(odd_frame()));
+    }
+  expect_round_trip(LabelMap(20));
+  expect_round_trip(label_map(ball(9, {250, 260, 270}, 100)));
 }
 
 TEST(OctreeFile, SaveAndLoad) {
