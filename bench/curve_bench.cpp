@@ -1,5 +1,6 @@
-// curve/decode, curve/encode: node number to voxel and back on the curve of order 10, one number at a time.
-// query/N: one random voxel of the bunny's universe.
+// curve/decode, curve/encode: node number to voxel and back on the curve of order 10 (decode20, encode20: of order 20),
+// random numbers one at a time. curve/walk: a voxel of a walk in order. query/N: one random voxel of the bunny's
+// universe.
 #include "blackleaf/curve.h"
 
 #include <algorithm>
@@ -12,7 +13,8 @@
 namespace blackleaf::bench {
 namespace {
 
-constexpr int kOrder = 10;
+constexpr int kWalkOrder = 10;
+constexpr std::uint64_t kWalk = std::uint64_t{1} << 20;
 constexpr std::size_t kNumbers = 4096;
 constexpr std::size_t kQueries = std::size_t{1} << 20;  // too many for what they touch to stay in the caches
 
@@ -42,21 +44,36 @@ void count_black(benchmark::State& state, const std::vector<curve::Voxel>& voxel
 
 void add_curve() {
   namespace mhf92 = papers::mhf92;
-  contender("curve/decode", "ours", [](benchmark::State& state) {
-    each(state, random_numbers(kOrder), [](std::uint64_t number) { return curve::voxel(kOrder, number); });
+  for (const int order : {10, 20}) {
+    const std::string suffix = order == 10 ? "" : std::to_string(order);
+    contender("curve/decode" + suffix, "ours", [=](benchmark::State& state) {
+      each(state, random_numbers(order), [=](std::uint64_t number) { return curve::voxel(order, number); });
+    });
+    contender("curve/decode" + suffix, "paper", [=](benchmark::State& state) {
+      each(state, random_numbers(order), [=](std::uint64_t number) { return mhf92::node_no_to_xyz(order, number); });
+    });
+    contender("curve/encode" + suffix, "ours", [=](benchmark::State& state) {
+      std::vector<curve::Voxel> voxels;
+      for (const std::uint64_t number : random_numbers(order)) voxels.push_back(curve::voxel(order, number));
+      each(state, voxels, [=](const curve::Voxel& voxel) { return curve::number(order, voxel); });
+    });
+    contender("curve/encode" + suffix, "paper", [=](benchmark::State& state) {
+      std::vector<mhf92::Coordinates> voxels;
+      for (const std::uint64_t number : random_numbers(order)) voxels.push_back(mhf92::node_no_to_xyz(order, number));
+      each(state, voxels, [=](const mhf92::Coordinates& voxel) { return mhf92::xyz_to_node_no(order, voxel); });
+    });
+  }
+  contender("curve/walk", "ours", [](benchmark::State& state) {
+    for (auto _ : state)
+      curve::walk(kWalkOrder, 0, kWalk, [](const curve::Voxel& voxel) { benchmark::DoNotOptimize(voxel); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kWalk));
   });
-  contender("curve/decode", "paper", [](benchmark::State& state) {
-    each(state, random_numbers(kOrder), [](std::uint64_t number) { return mhf92::node_no_to_xyz(kOrder, number); });
-  });
-  contender("curve/encode", "ours", [](benchmark::State& state) {
-    std::vector<curve::Voxel> voxels;
-    for (const std::uint64_t number : random_numbers(kOrder)) voxels.push_back(curve::voxel(kOrder, number));
-    each(state, voxels, [](const curve::Voxel& voxel) { return curve::number(kOrder, voxel); });
-  });
-  contender("curve/encode", "paper", [](benchmark::State& state) {
-    std::vector<mhf92::Coordinates> voxels;
-    for (const std::uint64_t number : random_numbers(kOrder)) voxels.push_back(mhf92::node_no_to_xyz(kOrder, number));
-    each(state, voxels, [](const mhf92::Coordinates& voxel) { return mhf92::xyz_to_node_no(kOrder, voxel); });
+  // Section 4's walkround without its database.
+  contender("curve/walk", "paper", [](benchmark::State& state) {
+    for (auto _ : state)
+      for (std::uint64_t number = 0; number < kWalk; ++number)
+        benchmark::DoNotOptimize(mhf92::node_no_to_xyz(kWalkOrder, number));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kWalk));
   });
   for (const int depth : {8, 9}) {
     const auto random_voxels = [=] {

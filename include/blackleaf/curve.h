@@ -103,11 +103,11 @@ struct Voxel {
 };
 
 /// The voxel with the given number on the curve of order `order`. Requires: 1 <= order <= 20, number < 8^order.
-/// O(order) table look-ups (MHF92, section 2.2).
+/// One table look-up for every two levels (MHF92, section 2.2, has one for every level).
 Voxel voxel(int order, std::uint64_t number);
 
 /// The number of a voxel on the curve of order `order`, in [0, 8^order). Requires: coordinates in [0, 2^order).
-/// O(order) table look-ups (MHF92, section 2.3).
+/// One table look-up for every two levels (MHF92, section 2.3, has one for every level).
 std::uint64_t number(int order, Voxel voxel);
 
 /// The first number of a node: its voxels have the numbers [first, first + 8^level). Requires: the cube lies in the
@@ -118,35 +118,43 @@ std::uint64_t first_number(int order, const Cube& cube);
 Cube cube(int order, std::uint64_t number, int level);
 
 /// Calls visit(voxel) for the voxels with the numbers [first, last), in curve order: MHF92's walkround without a
-/// look-up from the root for every voxel. Requires: 1 <= order <= 20, first <= last <= 8^order. O(order + last -
-/// first).
+/// descent from the root for every voxel: bricks of 64 voxels come from a table. Requires: 1 <= order <= 20, first <=
+/// last <= 8^order. O(last - first + order).
 template <class Visit>
 void walk(int order, std::uint64_t first, std::uint64_t last, Visit&& visit);
 
 namespace detail {
 
-// The part of [first, last) in the node whose first number is `at`.
-template <class Visit>
-void walk(const Cube& cube, unsigned table, std::uint64_t at, std::uint64_t first, std::uint64_t last, Visit& visit) {
-  const std::uint64_t voxels = std::uint64_t{1} << (3 * (cube.level - 1));
-  for (const Step step : kSteps[table]) {
-    if (at < last && at + voxels > first) {
-      const Cube child = cube.child(step.octant);
-      if (child.level == 0)
-        visit(Voxel{child.x, child.y, child.z});
-      else
-        walk(child, step.table, at, first, last, visit);
-    }
-    at += voxels;
-  }
+// Three coordinates of up to 20 bits side by side in one word.
+constexpr std::uint64_t pack(std::uint64_t x, std::uint64_t y, std::uint64_t z) { return x | y << 20 | z << 40; }
+constexpr Voxel unpack(std::uint64_t packed) {
+  constexpr std::uint64_t kCoordinate = (1u << 20) - 1;
+  return {static_cast<std::int32_t>(packed & kCoordinate), static_cast<std::int32_t>(packed >> 20 & kCoordinate),
+          static_cast<std::int32_t>(packed >> 40)};
 }
+inline constexpr std::uint64_t kTwoBits = pack(3, 3, 3);
+
+// 4^3 voxels that follow each other on the curve: their corner, packed, and 64 rows, one a voxel in order, of which the
+// bits kTwoBits are its place from the corner.
+struct Brick {
+  std::uint64_t corner;
+  const std::uint64_t* rows;
+};
+// The voxels with the numbers [64 * number, 64 * number + 64); for order 1 only the first eight are meant.
+Brick brick(int order, std::uint64_t number);
 
 }  // namespace detail
 
 template <class Visit>
 void walk(int order, std::uint64_t first, std::uint64_t last, Visit&& visit) {
   assert(order >= 1 && order <= kMaxDepth && first <= last && last <= std::uint64_t{1} << (3 * order));
-  detail::walk({0, 0, 0, order}, 0, 0, first, last, visit);
+  for (std::uint64_t at = first; at < last;) {
+    const detail::Brick brick = detail::brick(order, at / 64);
+    const std::uint64_t end = last - at < 64 - at % 64 ? last % 64 : 64;
+    for (std::uint64_t i = at % 64; i < end; ++i)
+      visit(detail::unpack(brick.corner | (brick.rows[i] & detail::kTwoBits)));
+    at += end - at % 64;
+  }
 }
 
 }  // namespace blackleaf::curve

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "octree/brick.h"
+#include "reference/curve_steps.h"
 
 namespace blackleaf {
 namespace {
@@ -44,6 +45,33 @@ TEST(Curve, ConsecutiveVoxelsShareAFaceAndNumbersInvert) {
   }
 }
 
+TEST(Curve, EqualsOneStepALevelEverywhereUpToOrderSix) {
+  for (int order = 1; order <= 6; ++order)
+    for (std::uint64_t i = 0; i < std::uint64_t{1} << (3 * order); ++i) {
+      const curve::Voxel v = reference::voxel_by_steps(order, i);
+      ASSERT_EQ(curve::voxel(order, i), v) << "order " << order << ", number " << i;
+      ASSERT_EQ(reference::number_by_steps(order, v), i);
+      ASSERT_EQ(curve::number(order, v), i) << "order " << order << ", number " << i;
+    }
+}
+
+TEST(Curve, EqualsOneStepALevelAtRandomUpToOrderTwenty) {
+  std::mt19937_64 random(24);
+  for (int order = 7; order <= 20; ++order)
+    for (int trial = 0; trial < 3000; ++trial) {
+      const std::uint64_t all = std::uint64_t{1} << (3 * order);
+      const std::uint64_t i = trial == 0 ? 0 : trial == 1 ? all - 1 : random() % all;
+      const curve::Voxel v = reference::voxel_by_steps(order, i);
+      ASSERT_EQ(curve::voxel(order, i), v) << "order " << order << ", number " << i;
+      ASSERT_EQ(curve::number(order, v), i) << "order " << order << ", number " << i;
+      const int level = static_cast<int>(random() % static_cast<unsigned>(order + 1));
+      const auto corner = [level](std::int32_t at) { return at >> level << level; };
+      const Cube cube{corner(v.x), corner(v.y), corner(v.z), level};
+      ASSERT_EQ(curve::cube(order, i, level), cube) << "order " << order << ", number " << i << ", level " << level;
+      ASSERT_EQ(curve::first_number(order, cube), i >> (3 * level) << (3 * level));
+    }
+}
+
 TEST(Curve, WalkingVisitsTheStretchInOrder) {
   std::mt19937_64 random(4);
   for (int trial = 0; trial < 300; ++trial) {
@@ -52,12 +80,16 @@ TEST(Curve, WalkingVisitsTheStretchInOrder) {
     const std::uint64_t first = trial < 20 ? 0 : random() % all;
     const std::uint64_t last = std::min(all, first + random() % 700);
     std::uint64_t next = first;
-    curve::walk(order, first, last, [&](const curve::Voxel& v) { ASSERT_EQ(v, curve::voxel(order, next++)); });
+    curve::walk(order, first, last,
+                [&](const curve::Voxel& v) { ASSERT_EQ(v, reference::voxel_by_steps(order, next++)); });
     EXPECT_EQ(next, last);
   }
-  int visits = 0;
-  curve::walk(5, 0, 32768, [&](const curve::Voxel&) { ++visits; });
-  EXPECT_EQ(visits, 32768);
+  for (int order = 1; order <= 5; ++order) {
+    const std::uint64_t all = std::uint64_t{1} << (3 * order);
+    std::uint64_t next = 0;
+    curve::walk(order, 0, all, [&](const curve::Voxel& v) { ASSERT_EQ(v, reference::voxel_by_steps(order, next++)); });
+    EXPECT_EQ(next, all);
+  }
 }
 
 TEST(Curve, InverseAtDepthTwenty) {
