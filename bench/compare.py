@@ -20,6 +20,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RESULTS = os.path.join(ROOT, "bench", "results.json")
 PROGRAM = os.path.join(ROOT, "build", "bench", "bench", "blackleaf_bench")
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
+COUNTERS = {"bytes": "B", "voxels": "voxels"}
 
 
 def fail(message):
@@ -66,13 +67,14 @@ def select(keys, names):
 
 
 def value_of(run, threads):
-    """What one repetition measured: bytes, seconds an item, or seconds.
+    """What one repetition measured: bytes, voxels, seconds an item, or seconds.
 
     For one thread these are the process's CPU seconds, which equal the elapsed ones on an idle machine and leave out what
     other programs did meanwhile; for several threads they are elapsed seconds.
     """
-    if "bytes" in run:
-        return run["bytes"], "bytes"
+    for unit in COUNTERS:
+        if unit in run:
+            return run[unit], unit
     time = (run["cpu_time"] if threads == 1 else run["real_time"]) * SECONDS[run["time_unit"]]
     if "items_per_second" in run:  # by elapsed time
         time /= run["items_per_second"] * run["real_time"] * SECONDS[run["time_unit"]]
@@ -109,12 +111,16 @@ def measure(program, key, contenders, repetitions, min_time):
 
 
 def shown(value, unit):
-    if unit == "bytes":
-        return f"{value:,.0f} B"
+    if unit in COUNTERS:
+        return f"{value:,.0f} {COUNTERS[unit]}"
     for factor, name in ((1, "s"), (1e-3, "ms"), (1e-6, "us")):
         if value >= factor:
             return f"{value / factor:.3g} {name}"
     return f"{value / 1e-9:.3g} ns"
+
+
+def ratio(value, ours):
+    return f"{value / ours:.3g}" if ours else "-"
 
 
 def print_rows(key, result):
@@ -122,7 +128,7 @@ def print_rows(key, result):
     if not result["peers"]:
         print(f"{key:24} {ours:>14}")
     for who, value in result["peers"].items():
-        print(f"{key:24} {ours:>14}  {who:12} {shown(value, result['unit']):>14} {value / result['ours']:10.3g}")
+        print(f"{key:24} {ours:>14}  {who:12} {shown(value, result['unit']):>14} {ratio(value, result['ours']):>10}")
     sys.stdout.flush()
 
 

@@ -2,8 +2,8 @@
 // input is a contender for it. The benchmark's name is KEY@WHO: "ours", "paper" (the papers' own algorithm), or a
 // peer's name. bench/compare runs the contenders of one key interleaved in one process and takes medians.
 //
-// To add a peer: write one .cpp that registers its contenders, compile it only when the peer is found (CMakeLists.txt),
-// and call it from main.cpp.
+// To add a peer: write one .cpp in peers/ that registers its contenders, and call it from main.cpp. What takes seconds
+// says how often it runs: ->Iterations(1)->Repetitions(3).
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -14,14 +14,35 @@ namespace blackleaf::bench {
 
 /// Registers a contender; `run` is a benchmark function of state. Elapsed time and the process's
 /// CPU time are both measured; bench/compare says which one counts.
-/// What is counted is, in this order: the counter "bytes" if set, the time per item if items are set, else the time per
-/// iteration.
+/// What is counted is, in this order: the counter "bytes" or "voxels" if set, the time per item if items are set, else
+/// the time per iteration.
 template <class Run>
 benchmark::internal::Benchmark* contender(const std::string& key, const std::string& who, Run run) {
   return benchmark::RegisterBenchmark((key + "@" + who).c_str(), run)
       ->MeasureProcessCPUTime()
       ->UseRealTime()
       ->Unit(benchmark::kMillisecond);
+}
+
+/// A contender whose result is a number; once is enough.
+template <class Number>
+void once(const std::string& key, const std::string& who, const std::string& unit, const Number& number) {
+  contender(key, who,
+            [=](benchmark::State& state) {
+              for (auto _ : state) state.counters[unit] = static_cast<double>(number());
+            })
+      ->Iterations(1)
+      ->Repetitions(1);
+}
+/// A contender whose result is a size in bytes.
+template <class Size>
+void sized(const std::string& key, const std::string& who, const Size& size) {
+  once(key, who, "bytes", size);
+}
+/// A contender whose result is a number of voxels.
+template <class Count>
+void counted(const std::string& key, const std::string& who, const Count& count) {
+  once(key, who, "voxels", count);
 }
 
 // One function a subject, each in a file of its own.
@@ -33,5 +54,9 @@ void add_interference();
 void add_drawing();
 void add_curve();
 void add_file();
+// One function a peer, each in a file of its own in peers/.
+void add_scanline();
+void add_openvdb();
+void add_octomap();
 
 }  // namespace blackleaf::bench

@@ -1,26 +1,12 @@
 // file/N: bytes of the .octree file; memory/N: bytes of the octree in memory; save/N and load/N: to bytes and back.
-#include <zstd.h>
-
 #include "blackleaf/octree_file.h"
 #include "blackleaf/runs.h"
+#include "compressed_size.h"
 #include "contenders.h"
 #include "inputs.h"
 
 namespace blackleaf::bench {
 namespace {
-
-template <class Size>
-void bytes(benchmark::State& state, const Size& size) {
-  std::size_t result = 0;
-  for (auto _ : state) result = size();
-  state.counters["bytes"] = static_cast<double>(result);
-}
-
-// A contender whose result is a size: once is enough.
-template <class Size>
-void sized(const std::string& key, const std::string& who, const Size& size) {
-  contender(key, who, [=](benchmark::State& state) { bytes(state, size); })->Iterations(1)->Repetitions(1);
-}
 
 // MHF92's monochrome stream, each count as a variable-length integer of 7 bits a byte.
 std::vector<std::uint8_t> monochrome_bytes(int depth) {
@@ -39,11 +25,6 @@ std::vector<std::uint8_t> bit_volume(int depth) {
   return bits;
 }
 
-std::size_t zstd_size(const std::vector<std::uint8_t>& plain) {
-  std::vector<std::uint8_t> packed(ZSTD_compressBound(plain.size()));
-  return ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), 19);
-}
-
 }  // namespace
 
 void add_file() {
@@ -51,8 +32,8 @@ void add_file() {
     const std::string side = side_name(depth);
     sized("file/" + side, "ours", [=] { return to_bytes(bunny(depth)).size(); });
     sized("file/" + side, "paper", [=] { return monochrome_bytes(depth).size(); });
-    sized("file/" + side, "paper-zstd", [=] { return zstd_size(monochrome_bytes(depth)); });
-    if (depth <= 9) sized("file/" + side, "bits-zstd", [=] { return zstd_size(bit_volume(depth)); });
+    sized("file/" + side, "paper-zstd", [=] { return compressed_size(monochrome_bytes(depth)); });
+    sized("file/" + side, "bits-zstd", [=] { return compressed_size(bit_volume(depth)); });
     sized("memory/" + side, "ours", [=] { return bunny(depth).memory_bytes(); });
     sized("memory/" + side, "dense", [=] { return std::size_t{1} << (3 * depth); });
     contender("save/" + side, "ours", [=](benchmark::State& state) {

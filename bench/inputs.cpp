@@ -43,6 +43,14 @@ const TriangleMesh& bunny_mesh() {
 
 MeshPlacement bunny_placement(int depth) { return place_by_fraction(bunny_mesh(), depth, kFraction); }
 
+std::vector<Eigen::Vector3d> bunny_points(int depth) {
+  const Frame frame = bunny_placement(depth).frame;  // upright: its axes are a diagonal matrix
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3d& vertex : bunny_mesh().vertices)
+    points.emplace_back((vertex - frame.origin).cwiseQuotient(frame.axes.diagonal()));
+  return points;
+}
+
 const Octree& bunny(int depth) {
   static std::map<int, Octree> made;
   const auto found = made.find(depth);

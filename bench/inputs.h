@@ -19,6 +19,8 @@ std::string side_name(int depth);
 
 const TriangleMesh& bunny_mesh();
 MeshPlacement bunny_placement(int depth);
+/// The vertices of bunny_mesh() in voxel units of the universe.
+std::vector<Eigen::Vector3d> bunny_points(int depth);
 /// Made once in a process.
 const Octree& bunny(int depth);
 /// The whole universe as bytes 0 and 1, x fastest; made once in a process.

@@ -13,6 +13,9 @@ int main(int argc, char** argv) {
   add_drawing();
   add_curve();
   add_file();
+  add_scanline();
+  add_openvdb();
+  add_octomap();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {
