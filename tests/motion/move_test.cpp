@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "blackleaf/error.h"
+#include "motion/centre_kernel.h"
 #include "reference/dense_motion.h"
 
 namespace blackleaf {
@@ -35,6 +36,26 @@ TEST(Move, DepthSixAndThreads) {
     for (int threads : {2, 3, 8})
       ASSERT_TRUE(moved == move(octree, motion, Leaving::clip, {.threads = threads, .progress = {}}));
   }
+}
+
+TEST(Move, EveryKernelGivesTheSame) {
+  const auto kernels = detail::centre_kernels();
+  ASSERT_EQ(kernels.back(), "scalar");
+  std::mt19937 random(77);
+  for (int trial = 0; trial < 60; ++trial) {
+    SCOPED_TRACE(trial);
+    const int depth = 3 + trial % 4;
+    const DenseGrid grid = reference::random_solid(depth, random);
+    const Octree octree = reference::octree(grid);
+    const Motion motion = reference::random_motion(depth, random);
+    const Octree expected = reference::octree(reference::move(grid, FixedMotion(motion)));
+    for (const std::string& kernel : kernels) {
+      SCOPED_TRACE(kernel);
+      detail::use_centre_kernel(kernel);
+      EXPECT_TRUE(move(octree, motion, Leaving::clip) == expected);
+    }
+  }
+  detail::use_centre_kernel("");
 }
 
 TEST(Move, LeavesExactlyWhenACornerDoes) {
