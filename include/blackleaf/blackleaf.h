@@ -8,6 +8,8 @@
 #include "blackleaf/error.h"
 #include "blackleaf/frame.h"
 #include "blackleaf/implicit.h"
+#include "blackleaf/label_map.h"
+#include "blackleaf/label_voxels.h"
 #include "blackleaf/leaves.h"
 #include "blackleaf/measures.h"
 #include "blackleaf/mesh.h"

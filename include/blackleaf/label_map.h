@@ -83,6 +83,11 @@ class LabelMapBuilder {
     }
     end_ += count;
   }
+  /// Room for so many runs.
+  void reserve(std::size_t runs) {
+    starts_.reserve(runs);
+    labels_.reserve(runs);
+  }
   /// Voxels told so far.
   std::uint64_t end() const { return end_; }
   /// The map. Throws Error(bad_input) unless end() is 8^depth. Leaves the builder empty.
@@ -103,6 +108,10 @@ Octree octree_from_labels(const LabelMap& map, const std::function<bool(std::uin
 Octree octree_from_label(const LabelMap& map, std::uint32_t label);
 /// The solid as a map of labels 1 (black) and 0 (white). O(words).
 LabelMap label_map(const Octree& octree);
+
+/// Calls visit(cube, label) for the largest aligned cubes of one label that fill the universe, in curve order: the
+/// leaves of an octree of many colours. O(runs * depth).
+void for_each_label_cube(const LabelMap& map, const std::function<void(const Cube&, std::uint32_t label)>& visit);
 
 /// What is known of one label.
 struct LabelFacts {

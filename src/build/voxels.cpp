@@ -2,25 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
-#include <string>
 #include <vector>
 
-#include "blackleaf/error.h"
 #include "octree/parallel.h"
 #include "octree/produce.h"
 #include "row_bits.h"
 #include "volume_bricks.h"
+#include "volume_placement.h"
 
 namespace blackleaf {
 namespace {
-
-std::string text(const std::array<std::int64_t, 3>& size) {
-  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]);
-}
-
-std::string point(const std::array<std::int64_t, 3>& p) {
-  return "(" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " + std::to_string(p[2]) + ")";
-}
 
 constexpr double kScanPart = 0.9;  // of the time goes into reading the volume, as progress has it
 
@@ -158,42 +149,13 @@ class BrickProducer {
 template <class T, class Inside>
 Octree build(const VolumeView<T>& volume, const Inside& inside, const VolumePlacement& placement, Frame frame,
              const Work& work) {
-  std::array<std::int64_t, 3> reach{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (volume.size[i] < 1)
-      throw Error(ErrorCode::bad_input, "the volume of " + text(volume.size) + " voxels is empty",
-                  "give a volume with at least one voxel along every axis");
-    if (placement.corner[i] < 0 || volume.size[i] > (std::int64_t{1} << kMaxDepth))
-      throw Error(ErrorCode::bad_input,
-                  "a volume of " + text(volume.size) + " voxels at " +
-                      point({placement.corner[0], placement.corner[1], placement.corner[2]}) +
-                      " does not fit any universe",
-                  "place it at coordinates of 0 or more, with no side over 2^20 voxels");
-    reach[i] = placement.corner[i] + volume.size[i];
-  }
-  if (placement.depth < 0 || placement.depth > kMaxDepth)
-    throw Error(ErrorCode::bad_argument, "depth " + std::to_string(placement.depth) + " is out of range",
-                "use 1 to 20, or 0 for the smallest that holds the volume");
-  const int depth = placement.depth > 0 ? placement.depth : depth_for(reach);
-  if (*std::max_element(reach.begin(), reach.end()) > std::int64_t{1} << depth)
-    throw Error(ErrorCode::bad_input,
-                "the volume reaches to " + point(reach) + " but a universe of depth " + std::to_string(depth) + " to " +
-                    std::to_string(std::int64_t{1} << depth),
-                "use depth " + std::to_string(depth_for(reach)) + " or leave it open");
+  const int depth = detail::checked_depth(volume.size, placement);
   VolumeScan<T, Inside> scan(volume, {placement.corner[0], placement.corner[1], placement.corner[2]}, inside);
   const BrickProducer bricks(scan.bricks(detail::part_of(work, 0, kScanPart)));
   return detail::produce(bricks, depth, std::move(frame), detail::part_of(work, kScanPart, 1));
 }
 
 }  // namespace
-
-int depth_for(const std::array<std::int64_t, 3>& size) {
-  const std::int64_t longest = *std::max_element(size.begin(), size.end());
-  for (int depth = 1; depth <= kMaxDepth; ++depth)
-    if (longest <= std::int64_t{1} << depth) return depth;
-  throw Error(ErrorCode::bad_input, "a volume that reaches to " + point(size) + " voxels does not fit any universe",
-              "no side may be over 2^20 voxels");
-}
 
 template <class T>
 Octree octree_from_voxels(const VolumeView<T>& volume, ValueRange<T> inside, VolumePlacement placement, Frame frame,

@@ -1,10 +1,10 @@
 #include "blackleaf/label_map.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
-#include <map>
 #include <string>
+#include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 #include "blackleaf/curve.h"
@@ -50,8 +50,11 @@ LabelMap LabelMapBuilder::finish(Frame frame) {
                 "the stream tells of " + std::to_string(end_) + " voxels, not of the 8^" + std::to_string(depth_) +
                     " of its universe",
                 "give the depth it was made for");
-  starts_.shrink_to_fit();
-  labels_.shrink_to_fit();
+  // Room that was told in advance is nearly right; to move everything for the rest would cost more than it saves.
+  if (starts_.capacity() - starts_.size() > starts_.size() / 8) {
+    starts_.shrink_to_fit();
+    labels_.shrink_to_fit();
+  }
   auto runs = std::make_shared<LabelMapBuilder>(depth_);
   runs->end_ = std::exchange(end_, 0);
   runs->starts_ = std::exchange(starts_, {});
@@ -121,36 +124,63 @@ LabelMap label_map(const Octree& octree) {
   return builder.finish(octree.frame());
 }
 
-std::vector<LabelFacts> label_facts(const LabelMap& map) {
-  std::map<std::uint32_t, LabelFacts> facts;
-  for (std::size_t run = 0; run < map.run_count(); ++run) {
-    const std::uint32_t label = map.labels()[run];
-    if (label == 0) continue;
-    const auto [place, is_new] = facts.try_emplace(label);
-    LabelFacts& known = place->second;
-    if (is_new) {
-      known.label = label;
-      known.bounding_box = {{map.side(), map.side(), map.side()}, {0, 0, 0}};
+namespace {
+
+// The cubes of a map, from the root down: a node of one label is one run's, or a part of it.
+template <class Visit>
+class CubeWalk {
+ public:
+  CubeWalk(const LabelMap& map, Visit& visit) : map_(map), visit_(visit), left_(map.count(0)) {}
+
+  void node(const Cube& cube, std::uint8_t table) {
+    const std::uint64_t voxels = voxels_of(cube.level);
+    if (left_ >= voxels) {
+      visit_(cube, map_.labels()[run_]);
+      left_ -= voxels;
+      if (left_ == 0 && ++run_ < map_.run_count()) left_ = map_.count(run_);
+      return;
     }
-    std::uint64_t at = map.starts()[run], left = map.count(run);
-    known.volume += left;
-    // The run as the largest aligned cubes.
-    while (left > 0) {
-      int level = at == 0 ? map.depth() : std::min(map.depth(), std::countr_zero(at) / 3);
-      while (voxels_of(level) > left) --level;
-      const Cube cube = curve::cube(map.depth(), at, level);
-      const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        known.bounding_box.min[axis] = std::min(known.bounding_box.min[axis], corner[axis]);
-        known.bounding_box.max[axis] = std::max(known.bounding_box.max[axis], corner[axis] + cube.side());
-      }
-      at += voxels_of(level);
-      left -= voxels_of(level);
-    }
+    for (const curve::Step step : curve::kSteps[table]) node(cube.child(step.octant), step.table);
   }
-  std::vector<LabelFacts> result;
-  for (const auto& [label, known] : facts) result.push_back(known);
-  return result;
+
+ private:
+  const LabelMap& map_;
+  Visit& visit_;
+  std::size_t run_ = 0;
+  std::uint64_t left_;  // voxels of the run
+};
+
+template <class Visit>
+void visit_cubes(const LabelMap& map, Visit&& visit) {
+  CubeWalk<std::remove_reference_t<Visit>>(map, visit).node({0, 0, 0, map.depth()}, 0);
+}
+
+}  // namespace
+
+void for_each_label_cube(const LabelMap& map, const std::function<void(const Cube&, std::uint32_t)>& visit) {
+  visit_cubes(map, visit);
+}
+
+std::vector<LabelFacts> label_facts(const LabelMap& map) {
+  std::unordered_map<std::uint32_t, LabelFacts> found;
+  LabelFacts* known = nullptr;  // the one met last is often met again
+  visit_cubes(map, [&](const Cube& cube, std::uint32_t label) {
+    if (label == 0) return;
+    if (known == nullptr || known->label != label)
+      known = &found.try_emplace(label, LabelFacts{label, 0, {{map.side(), map.side(), map.side()}, {0, 0, 0}}})
+                   .first->second;
+    known->volume += voxels_of(cube.level);
+    const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      known->bounding_box.min[axis] = std::min(known->bounding_box.min[axis], corner[axis]);
+      known->bounding_box.max[axis] = std::max(known->bounding_box.max[axis], corner[axis] + cube.side());
+    }
+  });
+  std::vector<LabelFacts> facts;
+  facts.reserve(found.size());
+  for (const auto& entry : found) facts.push_back(entry.second);
+  std::ranges::sort(facts, {}, &LabelFacts::label);
+  return facts;
 }
 
 }  // namespace blackleaf
