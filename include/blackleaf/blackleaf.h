@@ -22,5 +22,6 @@
 #include "blackleaf/runs_file.h"
 #include "blackleaf/set_operations.h"
 #include "blackleaf/volume_file.h"
+#include "blackleaf/voxel_stream.h"
 #include "blackleaf/voxels.h"
 #include "blackleaf/work.h"

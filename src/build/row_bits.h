@@ -1,6 +1,7 @@
 // Rows of values to rows of bits: the inner loop of building from voxels.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -128,5 +129,19 @@ std::uint64_t word_bits(const T* values, const InRange<T>& inside) {
 }
 
 #endif
+
+/// The voxels [x0, x1) of a row as bits, in words that begin at the multiples of 64, from the one at or before x0.
+/// Bits of the last word beyond x1 are 0. Requires: x0 < x1.
+template <class T, class Inside>
+void row_words(const T* values, std::int64_t x0, std::int64_t x1, const Inside& inside, std::uint64_t* words) {
+  const auto part = [&](std::int64_t end) {
+    *words++ = row_bits(values, static_cast<int>(end - x0), inside) << (x0 & 63);
+    values += end - x0;
+    x0 = end;
+  };
+  if ((x0 & 63) != 0) part(std::min((x0 | 63) + 1, x1));
+  for (; x0 + 64 <= x1; x0 += 64, values += 64) *words++ = word_bits(values, inside);
+  if (x0 < x1) part(x1);
+}
 
 }  // namespace blackleaf::detail

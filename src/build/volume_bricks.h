@@ -81,4 +81,25 @@ class VolumeBricks {
   std::vector<const std::uint64_t*> gray_;       // by strip
 };
 
+/// Octrees from bricks, as produce.h wants to be told.
+class BrickProducer {
+ public:
+  struct Task {};
+
+  /// `bricks` must outlive this.
+  explicit BrickProducer(const VolumeBricks& bricks) : bricks_(bricks) {}
+
+  Task root() const { return {}; }
+  Colour classify(Task&, const Cube& cube) const {
+    if (cube.level > 6) return bricks_.misses(cube) ? Colour::white : Colour::gray;
+    return bricks_.colour(cube);
+  }
+  Task child(const Task&, const Cube&, int) const { return {}; }
+  std::array<Subtree, 8> bricks(const Task&, const Cube& cube) const { return bricks_.children(cube); }
+  std::uint64_t brick(const Task&, const Cube& cube) const { return bricks_.brick(cube); }
+
+ private:
+  const VolumeBricks& bricks_;
+};
+
 }  // namespace blackleaf::detail

@@ -51,8 +51,9 @@ void InputFile::read_at(std::uint64_t offset, std::span<std::uint8_t> bytes) con
   while (!bytes.empty()) {
     const ssize_t got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (got < 0) {
-      if (errno == EINTR) continue;
-      fail(errno);
+      if (errno != EINTR) fail(errno);
+      check_for_stop();
+      continue;
     }
     if (got == 0)
       throw Error(ErrorCode::io, fmt::format("{}: became shorter while it was read", path_.string()), "read it again");

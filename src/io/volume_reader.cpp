@@ -1,19 +1,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <new>
+#include <exception>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
 #include "blackleaf/volume_file.h"
-#include "blackleaf/voxels.h"
+#include "blackleaf/voxel_stream.h"
 #include "io/image_io.h"
 #include "io/value_range.h"
 #include "io/volume_shape.h"
 #include "io/volume_source.h"
+#include "octree/parallel.h"
 
 namespace blackleaf {
 namespace {
@@ -47,7 +48,6 @@ class VolumeJob {
     const auto source = detail::open_volume(path_);
     const ImageInformation& information = source->information();
     size_ = detail::solid_size(information);
-    voxels_ = static_cast<std::uint64_t>(size_[0] * size_[1] * size_[2]);
     placed_ = detail::place_volume(path_, information, options_.depth, options_.centre);
     switch (*information.component) {
       case Component::u8:
@@ -91,38 +91,67 @@ class VolumeJob {
 
   template <class T>
   Octree octree(detail::VolumeSource& source) const {
-    if constexpr (std::is_integral_v<T> && sizeof(T) == 8) check_label();
-    const std::unique_ptr<T[]> values(new (std::nothrow) T[voxels_]());  // zeros
-    if (!values)
-      fail(fmt::format("needs {} bytes of memory, more than there are", voxels_ * sizeof(T)),
-           "crop or resample it first");
-    source.read(size_[2], values.get());
     const ValueRange<T> inside = detail::wanted_range<T>(options_);
     if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
+      check_label();
       // 64-bit values become a mask, in place of themselves: byte i never overtakes value i.
-      auto* mask = reinterpret_cast<std::uint8_t*>(values.get());
-      for (std::uint64_t i = 0; i < voxels_; ++i) {
-        const bool in = inside(values[i]);
-        mask[i] = in;
-      }
-      return octree_from_voxels<std::uint8_t>({mask, size_}, ValueRange<std::uint8_t>{1, 1}, placed_.placement,
-                                              placed_.frame, work_);
-    } else {
-      Octree result = octree_from_voxels<T>({values.get(), size_}, inside, placed_.placement, placed_.frame, work_);
-      if constexpr (std::is_floating_point_v<T>) {
-        if (result.is_empty() &&
-            std::all_of(values.get(), values.get() + voxels_, [](T value) { return std::isnan(value); }))
-          fail("every value is NaN", "get it again from its source");
-      }
+      return stream<T, std::uint8_t>(source, {1, 1}, [&](T* values, std::size_t count) {
+        auto* mask = reinterpret_cast<std::uint8_t*>(values);
+        for (std::size_t i = 0; i < count; ++i) {
+          const bool in = inside(values[i]);
+          mask[i] = in;
+        }
+        return mask;
+      });
+    } else if constexpr (std::is_floating_point_v<T>) {
+      bool numbers = false;
+      Octree result = stream<T, T>(source, inside, [&](T* values, std::size_t count) {
+        numbers = numbers || !std::all_of(values, values + count, [](T value) { return std::isnan(value); });
+        return values;
+      });
+      if (!numbers) fail("every value is NaN", "get it again from its source");
       return result;
+    } else {
+      return stream<T, T>(source, inside, [](T* values, std::size_t) { return values; });
     }
+  }
+
+  // Reads values of type T; prepare(values, count) makes of them the ones that the octree is built from. While some
+  // slices are built from, the next are read.
+  template <class T, class U, class Prepare>
+  Octree stream(detail::VolumeSource& source, ValueRange<U> inside, const Prepare& prepare) const {
+    VoxelStream<U> stream(size_, inside, placed_.placement, placed_.frame, work_);
+    const auto slice = static_cast<std::size_t>(size_[0] * size_[1]);
+    std::vector<T> now, ahead;
+    const auto read = [&](std::int64_t slices, std::vector<T>& values) {
+      try {
+        values.resize(slice * static_cast<std::size_t>(slices));
+      } catch (const std::exception&) {  // too long or too much
+        fail(fmt::format("needs {} bytes of memory for a slice, more than there are", slice * sizeof(T)),
+             "crop or resample it first");
+      }
+      source.read(slices, values.data());
+    };
+    std::int64_t slices = stream.wanted();
+    read(slices, now);
+    while (slices > 0) {
+      const std::int64_t next = stream.wanted(slices);
+      detail::both(
+          work_,
+          [&] {
+            if (next > 0) read(next, ahead);
+          },
+          [&] { stream.add(prepare(now.data(), slice * static_cast<std::size_t>(slices)), slices); });
+      std::swap(now, ahead);
+      slices = next;
+    }
+    return stream.finish();
   }
 
   const std::filesystem::path& path_;
   const VolumeOptions& options_;
   const Work& work_;
   std::array<std::int64_t, 3> size_{1, 1, 1};
-  std::uint64_t voxels_ = 0;
   detail::PlacedVolume placed_;
 };
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "blackleaf/curve.h"
@@ -24,6 +25,23 @@ struct Subtree {
   static Subtree brick(std::uint64_t bits) {
     return {bits, bits == 0 ? Colour::white : ~bits == 0 ? Colour::black : Colour::gray};
   }
+};
+
+/// A finished node of level 6, a block of 64^3 voxels, and all below it, in one piece of memory: for those who finish
+/// blocks out of order. Sixteen bytes if it has one colour.
+class PackedBlock {
+ public:
+  static constexpr int kLevel = 6;
+
+  bool is_white() const { return colour_ == Colour::white; }
+  /// Nodes stored of a level. Requires: 2 <= level < kLevel.
+  std::size_t count(int level) const { return words_ ? words_[1] >> (16 * (level - 2)) & 0xFFFF : 0; }
+
+ private:
+  friend class NodeArrays;
+  // The node's word, the counts of the levels 2..5 in 16 bits each (level 2 has at most 4096), the words of the levels.
+  std::unique_ptr<std::uint64_t[]> words_;
+  Colour colour_ = Colour::white;
 };
 
 class NodeArrays {
@@ -46,6 +64,14 @@ class NodeArrays {
   /// Appends the nodes of a later stretch of the curve and returns its top node as a node of this one.
   /// `level` is the level of that node. `stretch` is left empty.
   Subtree append(NodeArrays& stretch, Subtree top, int level);
+
+  /// Moves a block that has been closed here and the nodes below it, all there are, out; the room for them stays.
+  /// Requires: `top` was made by this object and is of level 6.
+  PackedBlock pack(const Subtree& top);
+  /// Appends a block as append() does a stretch; its memory is given back.
+  Subtree append(PackedBlock block);
+  /// Makes room for so many more nodes of a level.
+  void reserve(int level, std::size_t count);
 
   /// The octree with this root. Requires: `root` was made by this object; for depth 1 its word has 8 bits.
   /// Leaves the object empty.

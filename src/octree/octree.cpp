@@ -80,6 +80,43 @@ Subtree NodeArrays::append(NodeArrays& stretch, Subtree top, int level) {
   return top;
 }
 
+PackedBlock NodeArrays::pack(const Subtree& top) {
+  PackedBlock block;
+  block.colour_ = top.colour;
+  if (top.colour != Colour::gray) return block;
+  block.words_ = std::make_unique_for_overwrite<std::uint64_t[]>(2 + size());
+  block.words_[0] = top.word;
+  block.words_[1] = 0;
+  std::uint64_t* next = &block.words_[2];
+  for (std::size_t k = 2; k < PackedBlock::kLevel; ++k) {
+    block.words_[1] |= std::uint64_t{levels_[k].size()} << (16 * (k - 2));
+    next = std::copy(levels_[k].begin(), levels_[k].end(), next);
+    levels_[k].clear();
+  }
+  return block;
+}
+
+Subtree NodeArrays::append(PackedBlock block) {
+  if (!block.words_) return Subtree::uniform(block.colour_);
+  const std::uint64_t* next = &block.words_[2];
+  std::uint64_t offset = 0;  // of the level below
+  for (int k = 2; k < PackedBlock::kLevel; ++k) {
+    auto& level = levels_[static_cast<std::size_t>(k)];
+    const std::size_t before = level.size(), count = block.count(k);
+    level.insert(level.end(), next, next + count);
+    if (k >= 3)
+      for (std::size_t i = before; i < level.size(); ++i) level[i] = shifted(level[i], offset);
+    next += count;
+    offset = before;
+  }
+  return {shifted(block.words_[0], offset), Colour::gray};
+}
+
+void NodeArrays::reserve(int level, std::size_t count) {
+  auto& words = levels_[static_cast<std::size_t>(level)];
+  words.reserve(words.size() + count);
+}
+
 Octree NodeArrays::finish(int depth, Subtree root, Frame frame) {
   if (root.colour != Colour::gray) {
     *this = {};

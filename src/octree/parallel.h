@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/parallel_sort.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -60,6 +61,17 @@ void for_each_index(std::size_t count, const Work& work, const Body& body) {
     for (std::size_t i = 0; i < count; ++i) step(i);
   } else {
     with_threads(work, [&] { oneapi::tbb::parallel_for(std::size_t{0}, count, step); });
+  }
+}
+
+/// Calls both at once, or one after the other on one thread. If one throws, so does this.
+template <class First, class Second>
+void both(const Work& work, const First& first, const Second& second) {
+  if (thread_count(work) == 1) {
+    first();
+    second();
+  } else {
+    with_threads(work, [&] { oneapi::tbb::parallel_invoke(first, second); });
   }
 }
 

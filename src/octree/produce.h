@@ -33,6 +33,24 @@
 
 namespace blackleaf::detail {
 
+/// The node of level 2 at least that `cube` is, entered with `table`; `task` is what the producer knows of it.
+template <class Producer>
+Subtree produce_node(const Producer& producer, typename Producer::Task& task, const Cube& cube, std::uint8_t table,
+                     NodeArrays& arrays) {
+  if constexpr (requires { producer.bricks(task, cube); })
+    if (cube.level == 3) return arrays.close(3, producer.bricks(task, cube));
+  const Colour colour = producer.classify(task, cube);
+  if (colour != Colour::gray) return Subtree::uniform(colour);
+  if (cube.level == 2) return Subtree::brick(producer.brick(task, cube));
+  std::array<Subtree, 8> children;
+  for (const curve::Step step : curve::kSteps[table]) {
+    const Cube child = cube.child(step.octant);
+    auto below = producer.child(task, child, step.octant);
+    children[step.octant] = produce_node(producer, below, child, step.table, arrays);
+  }
+  return arrays.close(cube.level, children);
+}
+
 template <class Producer>
 class Production {
   using Task = typename Producer::Task;
@@ -46,7 +64,7 @@ class Production {
     Subtree top;
     if (depth_ <= kSerialDepth) {
       Task task = producer_.root();
-      top = serial(task, root, 0, arrays);
+      top = produce_node(producer_, task, root, 0, arrays);
       if (depth_ == 1) top = byte(top);
     } else {
       outline(producer_.root(), root, 0);
@@ -77,28 +95,13 @@ class Production {
   };
 
   void produce(Stretch& stretch, NodeArrays& arrays) const {
-    stretch.result = serial(stretch.task, stretch.cube, stretch.table, arrays);
+    stretch.result = produce_node(producer_, stretch.task, stretch.cube, stretch.table, arrays);
   }
 
   static Subtree byte(Subtree top) {
     if (top.colour != Colour::gray) return top;
     const std::uint64_t bits = top.word & 0xFF;
     return {bits, bits == 0 ? Colour::white : bits == 0xFF ? Colour::black : Colour::gray};
-  }
-
-  Subtree serial(Task& task, const Cube& cube, std::uint8_t table, NodeArrays& arrays) const {
-    if constexpr (requires { producer_.bricks(task, cube); })
-      if (cube.level == 3) return arrays.close(3, producer_.bricks(task, cube));
-    const Colour colour = producer_.classify(task, cube);
-    if (colour != Colour::gray) return Subtree::uniform(colour);
-    if (cube.level == 2) return Subtree::brick(producer_.brick(task, cube));
-    std::array<Subtree, 8> children;
-    for (const curve::Step step : curve::kSteps[table]) {
-      const Cube child = cube.child(step.octant);
-      Task below = producer_.child(task, child, step.octant);
-      children[step.octant] = serial(below, child, step.table, arrays);
-    }
-    return arrays.close(cube.level, children);
   }
 
   // Walks the top of the tree in curve order; writes what it decides to parts_ and leaves the rest as stretches.

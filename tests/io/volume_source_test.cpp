@@ -55,6 +55,7 @@ class VolumeSources : public testing::Test {
   using Size = std::array<std::int16_t, 3>;
 
   std::mt19937 random_{21};
+  std::size_t next_scale_ = 0;
   const test::TemporaryFolder folder_;
 
   int pick(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
@@ -192,14 +193,16 @@ TEST_F(VolumeSources, EveryTypeOrderAndPacking) {
           meta("a.mha", type, size, big, compressed, detached, bytes);
           expect_same("a.mha");
           // Neither slope nor intercept; a slope that is none; and values that are rescaled.
-          for (const auto& [slope, intercept] : {std::pair{0.0F, 0.0F},
-                                                 {1.0F, 0.0F},
-                                                 {0.0F, 3.0F},
-                                                 {1.0F, 0.5F},
-                                                 {0.1F, 0.0F},
-                                                 {-2.5F, 1e-3F},
-                                                 {1e-20F, 0.0F},
-                                                 {1.0F, 1e-17F}}) {
+          constexpr std::array<std::pair<float, float>, 8> kScales = {{{0.0F, 0.0F},
+                                                                       {1.0F, 0.0F},
+                                                                       {0.0F, 3.0F},
+                                                                       {1.0F, 0.5F},
+                                                                       {0.1F, 0.0F},
+                                                                       {-2.5F, 1e-3F},
+                                                                       {1e-20F, 0.0F},
+                                                                       {1.0F, 1e-17F}}};
+          for (int i = 0; i < 3; ++i) {
+            const auto [slope, intercept] = kScales[(next_scale_++) % kScales.size()];
             SCOPED_TRACE(testing::Message() << slope << " " << intercept);
             nifti("b", type, size, big, compressed, detached, bytes, slope, intercept);
             expect_same(detached ? "b.hdr" : compressed ? "b.nii.gz" : "b.nii");
