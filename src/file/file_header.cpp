@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
+#include "file/damage.h"
 
 namespace blackleaf::detail::format {
 namespace {
@@ -198,6 +199,10 @@ void put_at(Bytes& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
+}  // namespace
+
+Header read_header(const ByteSource& source, std::string_view name) { return HeaderReader(source, name).read(); }
+
 void check_arguments(const Frame& frame, std::string_view metadata) {
   if (!frame.origin.allFinite() || !frame.axes.allFinite())
     throw Error(ErrorCode::bad_argument, "the octree's frame has numbers that are not finite");
@@ -207,23 +212,15 @@ void check_arguments(const Frame& frame, std::string_view metadata) {
     throw Error(ErrorCode::bad_argument, std::string(problem));
 }
 
-}  // namespace
-
-Header read_header(const ByteSource& source, std::string_view name) { return HeaderReader(source, name).read(); }
-
-Bytes chunk_bytes(const ByteSource& source, std::string_view name, const Header& header, std::size_t chunk) {
-  const ChunkEntry& entry = header.chunks[chunk];
+Bytes chunk_bytes(const ByteSource& source, const ChunkEntry& entry) {
   Bytes bytes(entry.stored_bytes);  // no more than the file has
   source.read_at(entry.offset, bytes);
-  if (XXH3_64bits(bytes.data(), bytes.size()) != entry.checksum)
-    throw Error(ErrorCode::bad_input, fmt::format("{}: chunk {}: checksum does not match", name, chunk),
-                std::string(kDamaged));
+  if (XXH3_64bits(bytes.data(), bytes.size()) != entry.checksum) throw Damage{"checksum does not match"};
   return bytes;
 }
 
 Bytes file_bytes(Content content, int depth, const Frame& frame, std::string_view metadata,
                  const std::vector<Chunk>& chunks) {
-  check_arguments(frame, metadata);
   const std::size_t table = table_at(frame.unit.size(), metadata.size());
   const std::size_t checksum_at = table + chunks.size() * entry_bytes(kVersion);
   const std::size_t header_bytes = checksum_at + kChecksumBytes;

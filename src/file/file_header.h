@@ -8,6 +8,7 @@
 
 #include "blackleaf/frame.h"
 #include "blackleaf/octree.h"
+#include "blackleaf/work.h"
 #include "file/byte_source.h"
 #include "file/octree_format.h"
 
@@ -27,9 +28,11 @@ struct Header {
 /// lie within the file, one behind the other up to its end. Throws Error(bad_input) that begins with `name`.
 Header read_header(const ByteSource& source, std::string_view name);
 
-/// The contents of a chunk, their checksum checked. Throws Error(bad_input).
-std::vector<std::uint8_t> chunk_bytes(const ByteSource& source, std::string_view name, const Header& header,
-                                      std::size_t chunk);
+/// The contents of a chunk, their checksum checked. Throws Damage. May be called from several threads.
+std::vector<std::uint8_t> chunk_bytes(const ByteSource& source, const ChunkEntry& entry);
+
+/// Throws Error(bad_argument) for a frame or metadata that no file can keep.
+void check_arguments(const Frame& frame, std::string_view metadata);
 
 /// A chunk as it is written.
 struct Chunk {
@@ -38,8 +41,13 @@ struct Chunk {
   std::vector<std::uint8_t> contents;
 };
 
-/// A file of the current version. Throws Error(bad_argument) for a frame or metadata that cannot be kept.
+/// A file of the current version. Requires: check_arguments() has passed.
 std::vector<std::uint8_t> file_bytes(Content content, int depth, const Frame& frame, std::string_view metadata,
                                      const std::vector<Chunk>& chunks);
+
+/// How chunks are worked on: threads only where there is more than one chunk.
+inline Work one_thread_for_one(const Work& work, std::size_t chunks) {
+  return chunks > 1 ? work : Work{1, work.progress};
+}
 
 }  // namespace blackleaf::detail::format

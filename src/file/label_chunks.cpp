@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "file/damage.h"
 #include "file/octree_format.h"
 
 namespace blackleaf::detail {
@@ -40,15 +41,15 @@ class FrameReader {
       const std::uint8_t group = byte();
       value |= std::uint64_t{group & 0x7Fu} << shift;
       if (group & 0x80) continue;
-      if (group == 0 && shift > 0) throw std::string("a number is written with more bytes than it needs");
+      if (group == 0 && shift > 0) throw Damage{"a number is written with more bytes than it needs"};
       return value;
     }
-    throw std::string("a number is longer than any universe");
+    throw Damage{"a number is longer than any universe"};
   }
 
   void expect_end() {
-    if (at_ != end_ || refill()) throw std::string("bytes follow its last run");
-    if (input_.pos != input_.size) throw std::string("bytes follow its compressed data");
+    if (at_ != end_ || refill()) throw Damage{"bytes follow its last run"};
+    if (input_.pos != input_.size) throw Damage{"bytes follow its compressed data"};
   }
 
  private:
@@ -57,7 +58,7 @@ class FrameReader {
   };
 
   std::uint8_t byte() {
-    if (at_ == end_ && !refill()) throw std::string("its compressed data hold less than its voxels");
+    if (at_ == end_ && !refill()) throw Damage{"its compressed data hold less than its voxels"};
     return out_[at_++];
   }
 
@@ -68,10 +69,10 @@ class FrameReader {
       ZSTD_outBuffer output{out_.data(), out_.size(), 0};
       const std::size_t before = input_.pos;
       const std::size_t code = ZSTD_decompressStream(context_.get(), &output, &input_);
-      if (ZSTD_isError(code)) throw fmt::format("cannot be decompressed ({})", ZSTD_getErrorName(code));
+      if (ZSTD_isError(code)) throw Damage{fmt::format("cannot be decompressed ({})", ZSTD_getErrorName(code))};
       frame_ended_ = code == 0;
       end_ = output.pos;
-      if (end_ == 0 && !frame_ended_ && input_.pos == before) throw std::string("its compressed data end too early");
+      if (end_ == 0 && !frame_ended_ && input_.pos == before) throw Damage{"its compressed data end too early"};
     }
     return end_ > 0;
   }
@@ -111,30 +112,29 @@ void decode_labels(std::span<const std::uint8_t> bytes, std::uint64_t voxels,
                    const std::function<void(std::uint64_t, std::uint32_t)>& visit) {
   FrameReader in(bytes);
   const std::uint64_t count = in.varint();
-  if (count < 2 || count > voxels) throw fmt::format("has {} labels", count);
+  if (count < 2 || count > voxels) throw Damage{fmt::format("has {} labels", count)};
   std::vector<std::uint32_t> labels;  // grows as the labels come, never by what is claimed
   std::uint64_t label = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t step = in.varint();
     label += step;
-    if ((i > 0 && step == 0) || label > 0xFFFFFFFFu) throw std::string("its labels are not in order");
+    if ((i > 0 && step == 0) || label > 0xFFFFFFFFu) throw Damage{"its labels are not in order"};
     labels.push_back(static_cast<std::uint32_t>(label));
   }
   std::vector<bool> seen(labels.size(), false);
   std::uint64_t last = count;
   while (voxels > 0) {
     const std::uint64_t index = in.varint(), length = in.varint();
-    if (index >= count || index == last) throw std::string("a run has no label of its own");
-    if (length == 0) throw std::string("a run has no length");
-    if (length > voxels) throw std::string("its runs add up to more than its voxels");
+    if (index >= count || index == last) throw Damage{"a run has no label of its own"};
+    if (length == 0) throw Damage{"a run has no length"};
+    if (length > voxels) throw Damage{"its runs add up to more than its voxels"};
     seen[index] = true;
     visit(length, labels[index]);
     last = index;
     voxels -= length;
   }
   in.expect_end();
-  if (std::find(seen.begin(), seen.end(), false) != seen.end())
-    throw std::string("tells of a label that does not occur");
+  if (std::find(seen.begin(), seen.end(), false) != seen.end()) throw Damage{"tells of a label that does not occur"};
 }
 
 }  // namespace blackleaf::detail

@@ -14,8 +14,8 @@ namespace blackleaf::detail {
 /// The bytes of a chunk with these runs: neighbours have different labels, no count is 0, at least two runs.
 std::vector<std::uint8_t> encode_labels(std::span<const Run> runs);
 
-/// Calls visit(count, label) for the runs that the bytes of a chunk of so many voxels stand for. Throws std::string,
-/// the first thing wrong, for bytes that encode_labels cannot have made.
+/// Calls visit(count, label) for the runs that the bytes of a chunk of so many voxels stand for. Throws Damage for
+/// bytes that encode_labels cannot have made.
 void decode_labels(std::span<const std::uint8_t> bytes, std::uint64_t voxels,
                    const std::function<void(std::uint64_t count, std::uint32_t label)>& visit);
 

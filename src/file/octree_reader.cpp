@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -7,59 +9,133 @@
 #include "blackleaf/error.h"
 #include "blackleaf/octree_file.h"
 #include "file/byte_source.h"
+#include "file/damage.h"
 #include "file/file_header.h"
 #include "file/label_chunks.h"
 #include "file/old_runs.h"
+#include "file/solid_coder.h"
+#include "octree/parallel.h"
 
 namespace blackleaf {
 namespace {
 
 using namespace detail::format;
+using detail::NodeArrays;
+using detail::Subtree;
 using Bytes = std::vector<std::uint8_t>;
 
-LabelMap read_labels(const detail::ByteSource& source, std::string_view name, const Header& header) {
-  LabelMapBuilder builder(header.depth);
-  for (std::size_t i = 0; i < header.chunks.size(); ++i) {
-    const ChunkEntry& entry = header.chunks[i];
-    if (entry.kind == ChunkKind::uniform) {
-      builder.add(chunk_voxels(header.depth), entry.colour);
-      continue;
-    }
+// Calls read(i) for every chunk that has contents, on all threads; of several damaged chunks the first is told of.
+template <class Read>
+void read_chunks(const Header& header, std::string_view name, const Work& work, const Read& read) {
+  std::vector<std::string> problems(header.chunks.size());
+  detail::for_each_index(problems.size(), one_thread_for_one(work, problems.size()), [&](std::size_t i) {
     try {
-      detail::decode_labels(chunk_bytes(source, name, header, i), chunk_voxels(header.depth),
-                            [&](std::uint64_t count, std::uint32_t label) { builder.add(count, label); });
-    } catch (const std::string& problem) {
-      throw Error(ErrorCode::bad_input, fmt::format("{}: chunk {}: {}", name, i, problem), std::string(kDamaged));
+      if (header.chunks[i].kind != ChunkKind::uniform) read(i);
+    } catch (const detail::Damage& damage) {
+      problems[i] = damage.what;
     }
+  });
+  for (std::size_t i = 0; i < problems.size(); ++i)
+    if (!problems[i].empty())
+      throw Error(ErrorCode::bad_input, fmt::format("{}: chunk {}: {}", name, i, problems[i]), std::string(kDamaged));
+}
+
+class SolidReader {
+ public:
+  SolidReader(const detail::ByteSource& source, const Header& header) : source_(source), header_(header) {}
+
+  Octree read(std::string_view name, const Work& work) {
+    collect(header_.depth, 0);
+    read_chunks(header_, name, work, [&](std::size_t i) {
+      const Bytes bytes = chunk_bytes(source_, header_.chunks[i]);
+      parts_[i].top = detail::decode_solid(bytes, std::max(2, level_), parts_[i].table, parts_[i].arrays);
+      if (header_.depth == 1 && (parts_[i].top.word >> 8 != 0 || parts_[i].top.word == 0xFF))
+        throw detail::Damage{"has voxels that are not its universe's"};
+    });
+    NodeArrays arrays;
+    std::size_t part = 0;
+    const Subtree root = join(header_.depth, 0, part, arrays);
+    return arrays.finish(header_.depth, root, header_.frame);
+  }
+
+ private:
+  struct Part {
+    unsigned table;
+    Subtree top;
+    NodeArrays arrays;
+  };
+
+  // The tables with which the curve enters the chunks.
+  void collect(int level, unsigned table) {
+    if (level == level_) {
+      const std::size_t i = parts_.size();
+      parts_.push_back({table, Subtree::uniform(header_.chunks[i].colour ? Colour::black : Colour::white), {}});
+      return;
+    }
+    for (const curve::Step step : curve::kSteps[table]) collect(level - 1, step.table);
+  }
+
+  Subtree join(int level, unsigned table, std::size_t& part, NodeArrays& arrays) {
+    if (level == level_) {
+      Part& here = parts_[part++];
+      return arrays.append(here.arrays, here.top, level);
+    }
+    std::array<Subtree, 8> children;
+    for (const curve::Step step : curve::kSteps[table])
+      children[step.octant] = join(level - 1, step.table, part, arrays);
+    return arrays.close(level, children);
+  }
+
+  const detail::ByteSource& source_;
+  const Header& header_;
+  const int level_ = chunk_level(header_.depth);
+  std::vector<Part> parts_;  // one a chunk, in curve order
+};
+
+LabelMap read_labels(const detail::ByteSource& source, std::string_view name, const Header& header, const Work& work) {
+  const std::uint64_t voxels = chunk_voxels(header.depth);
+  std::vector<std::vector<Run>> parts(header.chunks.size());
+  read_chunks(header, name, work, [&](std::size_t i) {
+    detail::decode_labels(chunk_bytes(source, header.chunks[i]), voxels, [&](std::uint64_t count, std::uint32_t label) {
+      parts[i].push_back({count, label});
+    });
+  });
+  LabelMapBuilder builder(header.depth);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (header.chunks[i].kind == ChunkKind::uniform) builder.add(voxels, header.chunks[i].colour);
+    for (const Run& run : parts[i]) builder.add(run.count, run.colour);
+    std::vector<Run>().swap(parts[i]);
   }
   return builder.finish(header.frame);
 }
 
-OctreeFile read(const detail::ByteSource& source, std::string_view name) {
+OctreeFile read(const detail::ByteSource& source, std::string_view name, const Work& work) {
   Header header = read_header(source, name);
   if (header.content == Content::labels) {
-    LabelMap labels = read_labels(source, name, header);
+    LabelMap labels = read_labels(source, name, header, work);
     Octree octree = octree_from_labels(labels);
     return {std::move(octree), std::move(header.metadata), source.size(), std::move(labels)};
   }
-  return {read_old_runs(source, name, header), std::move(header.metadata), source.size(), std::nullopt};
+  Octree octree =
+      header.version == 1 ? read_old_runs(source, name, header) : SolidReader(source, header).read(name, work);
+  return {std::move(octree), std::move(header.metadata), source.size(), std::nullopt};
 }
 
 }  // namespace
 
-OctreeFile load(const std::filesystem::path& path) {
+OctreeFile load(const std::filesystem::path& path, const Work& work) {
   detail::InputFile file(path);
-  if (file.is_regular()) return read(detail::FileBytes(file), path.string());
+  if (file.is_regular()) return read(detail::FileBytes(file), path.string(), work);
   // A pipe: take what it gives; the checks are the same.
   Bytes bytes;
   std::array<std::uint8_t, 1 << 16> buffer;
   while (const std::size_t got = file.read_some(buffer))
-    bytes.insert(bytes.end(), buffer.begin(), buffer.begin() + got);
-  return from_bytes(bytes, path.string());
+    bytes.insert(bytes.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(got));
+  return from_bytes(bytes, path.string(), work);
 }
 
-OctreeFile from_bytes(const std::vector<std::uint8_t>& bytes, const std::string& name) {
-  return read(detail::MemoryBytes(bytes), name);
+OctreeFile from_bytes(const std::vector<std::uint8_t>& bytes, const std::string& name, const Work& work) {
+  return read(detail::MemoryBytes(bytes), name, work);
 }
 
 }  // namespace blackleaf

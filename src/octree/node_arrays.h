@@ -7,8 +7,10 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "blackleaf/curve.h"
@@ -58,6 +60,17 @@ class NodeArrays {
     const std::uint64_t first = gray ? below.size() : 0;
     for (unsigned rest = gray; rest; rest &= rest - 1)
       below.push_back(children[static_cast<unsigned>(std::countr_zero(rest))].word);
+    return {black | gray << 8 | first << 16, Colour::gray};
+  }
+
+  /// The same from the masks of black and gray children and the words of the gray ones, by octant. Requires: no child
+  /// is black and gray; a word for each gray one.
+  Subtree close(int level, unsigned black, unsigned gray, std::span<const std::uint64_t> words) {
+    assert((black & gray) == 0 && words.size() == static_cast<std::size_t>(std::popcount(gray)));
+    if (gray == 0 && (black == 0 || black == 0xFF)) return Subtree::uniform(black ? Colour::black : Colour::white);
+    auto& below = levels_[static_cast<std::size_t>(level - 1)];
+    const std::uint64_t first = gray ? below.size() : 0;
+    for (const std::uint64_t word : words) below.push_back(word);
     return {black | gray << 8 | first << 16, Colour::gray};
   }
 

@@ -9,6 +9,8 @@
 #include <random>
 
 #include "blackleaf/implicit.h"
+#include "blackleaf/label_map.h"
+#include "blackleaf/measures.h"
 #include "blackleaf/octree_file.h"
 #include "blackleaf/runs.h"
 #include "file/octree_format.h"
@@ -51,10 +53,21 @@ Bytes compress(const Bytes& raw, bool content_size = true) {
 
 constexpr std::size_t kTable = table_at(5, 2);  // of files with the unit "voxel" and the metadata "{}"
 
-// A file of depth 2 (64 voxels, one chunk) with any contents, all checksums right.
+// A white universe as version 1 wrote it.
+Bytes old_file(int depth) {
+  const Bytes now = to_bytes(Octree(depth));
+  Bytes bytes(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(kTable));
+  bytes.resize(kTable + chunk_count(depth) * entry_bytes(1) + kChecksumBytes, 0);
+  put(bytes, kVersionAt, std::uint32_t{1});
+  put(bytes, kHeaderBytesAt, static_cast<std::uint32_t>(bytes.size()));
+  reseal(bytes);
+  return bytes;
+}
+
+// A file of version 1 whose first chunk has any contents, all checksums right.
 Bytes forge(const Bytes& stored, std::uint64_t runs, std::uint64_t raw_bytes, int depth = 2) {
-  Bytes bytes = to_bytes(octree_from_runs(Runs{{1, 1}, {(std::uint64_t{1} << (3 * depth)) - 1, 0}}, depth));
-  bytes.resize(get<std::uint32_t>(bytes, kHeaderBytesAt));
+  Bytes bytes = old_file(depth);
+  put(bytes, kTable, std::uint8_t{2});
   put(bytes, kTable + 8, runs);
   put(bytes, kTable + 16, raw_bytes);
   put(bytes, kTable + 24, std::uint64_t{stored.size()});
@@ -62,6 +75,21 @@ Bytes forge(const Bytes& stored, std::uint64_t runs, std::uint64_t raw_bytes, in
   reseal(bytes);
   bytes.insert(bytes.end(), stored.begin(), stored.end());
   return bytes;
+}
+
+// A file of version 2 whose first chunk has any contents, all checksums right.
+Bytes forge_new(const Bytes& stored, int depth, Content content) {
+  Bytes bytes = content == Content::solid ? to_bytes(Octree(depth)) : to_bytes(LabelMap(depth));
+  put(bytes, kTable, std::uint64_t{1} << 56 | stored.size());
+  put(bytes, kTable + 8, std::uint64_t{XXH3_64bits(stored.data(), stored.size())});
+  reseal(bytes);
+  bytes.insert(bytes.end(), stored.begin(), stored.end());
+  return bytes;
+}
+
+// The contents of the first chunk of a file with one chunk.
+Bytes contents(const Bytes& file) {
+  return Bytes(file.begin() + static_cast<std::ptrdiff_t>(get<std::uint32_t>(file, kHeaderBytesAt)), file.end());
 }
 
 void expect_refused(const Bytes& bytes, const std::vector<std::string>& pieces) {
@@ -78,8 +106,19 @@ Bytes small_file() {
   return to_bytes(reference::octree(grid).with_frame(frame), "{\"name\": \"noise\"}");
 }
 
+// A map of five labels in blocks and grains.
+LabelMap small_map() {
+  std::mt19937 random(9);
+  LabelMapBuilder builder(3);
+  while (builder.end() < 512)
+    builder.add(std::min<std::uint64_t>(1 + random() % 20, 512 - builder.end()),
+                static_cast<std::uint32_t>(random() % 5));
+  return builder.finish();
+}
+
 TEST(OctreeDamage, TruncationAtEveryLength) {
-  for (const Bytes& whole : {small_file(), to_bytes(ball(9, {256, 250, 270}, 20.5))})
+  for (const Bytes& whole :
+       {small_file(), to_bytes(ball(9, {256, 250, 270}, 20.5)), to_bytes(small_map()), forge(compress({1, 63}), 2, 2)})
     for (std::size_t length = 0; length < whole.size(); ++length) {
       SCOPED_TRACE(length);
       const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
@@ -89,46 +128,83 @@ TEST(OctreeDamage, TruncationAtEveryLength) {
 }
 
 TEST(OctreeDamage, EveryFlipOfEveryByte) {
-  Bytes bytes = small_file();
-  for (std::size_t at = 0; at < bytes.size(); ++at)
-    for (unsigned mask = 1; mask < 256; ++mask) {
-      bytes[at] ^= static_cast<std::uint8_t>(mask);
-      try {
-        from_bytes(bytes);
-        ADD_FAILURE() << "byte " << at << " ^ " << mask << " went unnoticed";
-      } catch (const Error& error) {
-        if (error.code() != ErrorCode::bad_input) ADD_FAILURE() << at << ": " << error.what();
+  for (Bytes bytes : {small_file(), to_bytes(small_map()), forge(compress({1, 63}), 2, 2)}) {
+    for (std::size_t at = 0; at < bytes.size(); ++at)
+      for (unsigned mask = 1; mask < 256; mask += at < kTable ? 9 : 1) {
+        bytes[at] ^= static_cast<std::uint8_t>(mask);
+        try {
+          from_bytes(bytes);
+          ADD_FAILURE() << "byte " << at << " ^ " << mask << " went unnoticed";
+        } catch (const Error& error) {
+          if (error.code() != ErrorCode::bad_input) ADD_FAILURE() << at << ": " << error.what();
+        }
+        bytes[at] ^= static_cast<std::uint8_t>(mask);
       }
-      bytes[at] ^= static_cast<std::uint8_t>(mask);
-    }
-  EXPECT_NO_THROW(from_bytes(bytes));
+    EXPECT_NO_THROW(from_bytes(bytes));
+  }
 }
 
-// The same with the checksums mended, as a hostile writer would: refused, or an octree whose file is that file again up
-// to packing.
-TEST(OctreeDamage, FlipsWithChecksumsMended) {
-  const Bytes whole = small_file();
-  const std::size_t header = get<std::uint32_t>(whole, kHeaderBytesAt);
-  std::mt19937 random(11);
-  int accepted = 0;
-  for (int i = 0; i < 60000; ++i) {
-    Bytes bytes = whole;
-    for (int flips = 1 + i % 3; flips > 0; --flips)
-      bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
-    const std::size_t entry = header - 8 - entry_bytes(1);
-    put(bytes, entry + 32, std::uint64_t{XXH3_64bits(bytes.data() + header, bytes.size() - header)});
-    put(bytes, header - 8, std::uint64_t{XXH3_64bits(bytes.data(), header - 8)});
-    try {
-      const OctreeFile file = from_bytes(bytes);
-      ++accepted;
-      ASSERT_EQ(validate(file.octree), "");
-      const Bytes again = to_bytes(file.octree, file.metadata);
-      ASSERT_TRUE(std::equal(again.begin(), again.begin() + static_cast<std::ptrdiff_t>(entry), bytes.begin()));
-    } catch (const Error& error) {
-      ASSERT_EQ(static_cast<int>(error.code()), static_cast<int>(ErrorCode::bad_input)) << error.what();
-    }
+// Contents as a hostile writer would make them, with all checksums right: refused, or read as something whose file is
+// this one, byte for byte, if it is a solid (labels may be packed otherwise).
+void expect_refused_or_right(const Bytes& bytes, int& accepted) {
+  try {
+    const OctreeFile file = from_bytes(bytes);
+    ++accepted;
+    ASSERT_EQ(validate(file.octree), "");
+    if (file.labels)
+      ASSERT_TRUE(*from_bytes(to_bytes(*file.labels, file.metadata)).labels == *file.labels);
+    else
+      ASSERT_EQ(to_bytes(file.octree, file.metadata), bytes);
+  } catch (const Error& error) {
+    ASSERT_EQ(static_cast<int>(error.code()), static_cast<int>(ErrorCode::bad_input)) << error.what();
   }
-  EXPECT_GT(accepted, 1000);  // frames and metadata are anyone's to choose: the test reaches past the checksums
+}
+
+TEST(OctreeDamage, FlipsWithChecksumsMended) {
+  std::mt19937 random(11);
+  for (const Bytes& whole : {small_file(), to_bytes(small_map()), to_bytes(ball(6, {30, 31, 33}, 20.5))}) {
+    const std::size_t header = get<std::uint32_t>(whole, kHeaderBytesAt);
+    int accepted = 0;
+    for (int i = 0; i < 20000; ++i) {
+      Bytes bytes = whole;
+      for (int flips = 1 + i % 3; flips > 0; --flips)
+        bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+      put(bytes, header - 16, std::uint64_t{XXH3_64bits(bytes.data() + header, bytes.size() - header)});
+      put(bytes, header - 8, std::uint64_t{XXH3_64bits(bytes.data(), header - 8)});
+      expect_refused_or_right(bytes, accepted);
+    }
+    EXPECT_GT(accepted, 100);  // frames and metadata are anyone's to choose: the test reaches past the checksums
+  }
+}
+
+// Beginnings and ends of two files' contents, cut and joined.
+TEST(OctreeDamage, Splices) {
+  std::mt19937 random(12);
+  int accepted = 0;
+  const auto splice = [&](const Bytes& a, const Bytes& b, int depth, Content content) {
+    for (int i = 0; i < 3000; ++i) {
+      Bytes bytes(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(random() % (a.size() + 1)));
+      bytes.insert(bytes.end(), b.begin() + static_cast<std::ptrdiff_t>(random() % b.size()), b.end());
+      if (bytes != a && bytes != b) expect_refused_or_right(forge_new(bytes, depth, content), accepted);
+    }
+  };
+  splice(contents(to_bytes(ball(6, {30, 31, 33}, 20.5))), contents(to_bytes(ball(6, {33, 29, 35}, 17.25))), 6,
+         Content::solid);
+  splice(contents(to_bytes(small_map())), contents(to_bytes(label_map(ball(3, {4, 3.5, 4}, 2.5)))), 3, Content::labels);
+  EXPECT_EQ(accepted, 0);
+}
+
+// Contents of random bytes are refused soon, in whatever universe, without much memory.
+TEST(OctreeDamage, RandomContents) {
+  std::mt19937 random(13);
+  int accepted = 0;
+  for (int i = 0; i < 6000; ++i) {
+    Bytes bytes(random() % 200);
+    for (auto& byte : bytes) byte = static_cast<std::uint8_t>(i % 4 == 0 ? 0 : random());
+    if (bytes.size() >= 8) bytes[2] |= 1, bytes[6] |= 1;  // states of the coder
+    expect_refused_or_right(forge_new(bytes, 1 + i % 20, i % 3 ? Content::solid : Content::labels), accepted);
+  }
+  EXPECT_LT(accepted, 100);
 }
 
 TEST(OctreeDamage, RandomBytesBehindTheMagic) {
@@ -138,7 +214,7 @@ TEST(OctreeDamage, RandomBytesBehindTheMagic) {
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
     if (bytes.size() >= 20) {
       std::memcpy(bytes.data(), kMagic.data(), 8);
-      put(bytes, kVersionAt, std::uint32_t{1});
+      put(bytes, kVersionAt, static_cast<std::uint32_t>(1 + random() % 2));
       if (i % 2) bytes[kDepthAt] = static_cast<std::uint8_t>(1 + random() % 20);
     }
     EXPECT_THROW(from_bytes(bytes), Error);
@@ -172,6 +248,67 @@ TEST(OctreeDamage, KindsOfFilesThatAreNotOctrees) {
   expect_refused(replaced("\x89", "\x09"), {"eighth bits"});
   put(bytes, kVersionAt, std::uint32_t{3});
   expect_refused(bytes, {"format version 3", "reads versions 1 to 2", "newer"});
+}
+
+TEST(OctreeDamage, HostileHeadersOfVersion2) {
+  const Bytes good = to_bytes(octree_from_runs(Runs{{1, 1}, {63, 0}}, 2));
+  const auto with = [&](std::size_t at, auto value) {
+    Bytes bytes = good;
+    put(bytes, at, value);
+    reseal(bytes);
+    return bytes;
+  };
+  ASSERT_EQ(good[kTable + 7], 1);
+  expect_refused(with(kContentAt, std::uint8_t{2}), {"contents of unknown kind 2"});
+  expect_refused(with(kReservedAt, std::uint8_t{1}), {"reserved byte 14"});
+  expect_refused(with(kTable + 7, std::uint8_t{2}), {"chunk 0: unknown kind 2"});
+  expect_refused(with(kTable + 7, std::uint8_t{0}), {"chunk 0: is of one colour and yet has contents"});
+  expect_refused(with(kTable + 6, std::uint8_t{1}), {"ends after", "too early for chunk 0"});
+  expect_refused(with(kTable, std::uint64_t{1} << 56 | 1), {"bytes follow the last chunk"});
+  expect_refused(with(kTable + 8, std::uint64_t{0}), {"chunk 0: checksum does not match", "restore it from a copy"});
+  const auto colour = [&](Bytes bytes, std::uint64_t value) {
+    put(bytes, kTable, value);
+    reseal(bytes);
+    return bytes;
+  };
+  expect_refused(colour(to_bytes(Octree(3)), 2), {"chunk 0: unknown colour 2"});
+  expect_refused(colour(to_bytes(LabelMap(3)), std::uint64_t{1} << 32), {"chunk 0: unknown colour 4294967296"});
+  EXPECT_TRUE(from_bytes(colour(to_bytes(Octree(3)), 1)).octree == Octree(3, Colour::black));
+}
+
+TEST(OctreeDamage, HostileContentsOfVersion2) {
+  const Bytes brick = contents(to_bytes(octree_from_runs(Runs{{1, 1}, {63, 0}}, 2)));
+  EXPECT_NO_THROW(from_bytes(forge_new(brick, 2, Content::solid)));
+  expect_refused(forge_new({}, 2, Content::solid), {"chunk 0: is too short"});
+  expect_refused(forge_new(Bytes(8, 0), 2, Content::solid), {"chunk 0: begins with no state"});
+  Bytes longer = brick;
+  longer.insert(longer.end(), 2, 0);
+  expect_refused(forge_new(longer, 2, Content::solid), {"chunk 0: goes on after its last node"});
+  longer.pop_back();
+  expect_refused(forge_new(longer, 2, Content::solid), {"chunk 0: is too short"});
+  // A brick with voxels beyond octant 0 is no universe of depth 1.
+  expect_refused(forge_new(contents(to_bytes(octree_from_runs(Runs{{63, 0}, {1, 1}}, 2))), 1, Content::solid),
+                 {"chunk 0: has voxels that are not its universe's"});
+}
+
+TEST(OctreeDamage, HostileLabels) {
+  const auto refused = [](const Bytes& raw, const std::vector<std::string>& pieces) {
+    expect_refused(forge_new(compress(raw), 1, Content::labels), pieces);
+  };
+  EXPECT_NO_THROW(from_bytes(forge_new(compress({2, 0, 5, 0, 3, 1, 5}), 1, Content::labels)));
+  refused({2, 0, 5, 0, 3, 1, 4}, {"less than its voxels"});
+  refused({2, 0, 5, 0, 3, 1, 6}, {"more than its voxels"});
+  refused({2, 0, 5, 0, 3, 1, 5, 0}, {"bytes follow its last run"});
+  refused({2, 0, 5, 0, 0, 1, 8}, {"a run has no length"});
+  refused({2, 0, 5, 0, 3, 0, 5}, {"no label of its own"});
+  refused({2, 0, 5, 0, 3, 2, 5}, {"no label of its own"});
+  refused({2, 5, 0, 0, 3, 1, 5}, {"not in order"});
+  refused({3, 0, 5, 1, 0, 3, 1, 5}, {"does not occur"});
+  refused({1, 0, 0, 8}, {"has 1 labels"});
+  refused({9, 0}, {"has 9 labels"});
+  refused({0x80}, {"less than its voxels"});
+  refused({0x82, 0}, {"more bytes than it needs"});
+  expect_refused(forge_new({1, 2, 3}, 1, Content::labels), {"chunk 0: cannot be decompressed"});
 }
 
 TEST(OctreeDamage, HostileHeaders) {

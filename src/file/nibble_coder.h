@@ -1,0 +1,191 @@
+// Entropy coding: symbols 0..15 with adaptive frequencies, by range asymmetric numeral systems.
+//
+// A model keeps where each symbol's share of 2^14 begins; after every symbol all of these move a fraction of the way
+// towards what would have been best for it. Writer and reader run the same models, so nothing about them is stored.
+// The coder itself is Duda's rANS (arXiv:1311.2540) with two states that take turns, so that a processor can work on
+// two symbols at once, and 16 bits put out at a time.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#ifdef __SSE4_1__
+#include <smmintrin.h>
+#endif
+
+#include "file/damage.h"
+
+namespace blackleaf::detail {
+
+inline constexpr int kShareBits = 14;
+inline constexpr std::uint32_t kShares = 1u << kShareBits;
+// What an update leaves to each other symbol in the long run: a symbol costs at least log2(1 / (1 - 15 * 8 / 2^14)),
+// 0.01 bits, which bounds how much a file of given size can stand for.
+inline constexpr int kLeftShare = 8;
+
+namespace nibble {
+
+/// kTargets[s][i]: where symbol i would begin if s had all shares but those left to the others.
+inline constexpr auto kTargets = [] {
+  std::array<std::array<std::int16_t, 16>, 16> targets{};
+  for (int s = 0; s < 16; ++s)
+    for (int i = 0; i < 16; ++i)
+      targets[static_cast<std::size_t>(s)][static_cast<std::size_t>(i)] =
+          static_cast<std::int16_t>(i <= s ? kLeftShare * i : static_cast<int>(kShares) - kLeftShare * (16 - i));
+  return targets;
+}();
+
+/// kReciprocals[s] = floor(2^46 / s) + 1: for x < 2^18 s, x / s rounded down is x kReciprocals[s] / 2^46 rounded down.
+/// The error x / 2^46 is below 1 / s since x s < 2^46, and the product is below 2^64 since s < 2^14.
+inline constexpr auto kReciprocals = [] {
+  std::array<std::uint64_t, kShares> reciprocals{};
+  for (std::uint32_t s = 1; s < kShares; ++s) reciprocals[s] = (std::uint64_t{1} << 46) / s + 1;
+  return reciprocals;
+}();
+
+}  // namespace nibble
+
+/// The frequencies of 16 symbols.
+struct alignas(16) NibbleModel {
+  /// Where the share of each symbol begins; begins[0] is 0, and every share is at least 1.
+  std::array<std::int16_t, 16> begins{};
+
+  /// The model with these shares. Requires: each at least 1, their sum 2^14.
+  static NibbleModel of(const std::array<int, 16>& shares) {
+    NibbleModel model;
+    int begin = 0;
+    for (std::size_t i = 0; i < 16; ++i) {
+      model.begins[i] = static_cast<std::int16_t>(begin);
+      begin += shares[i];
+    }
+    return model;
+  }
+
+  std::uint32_t begin(unsigned symbol) const { return static_cast<std::uint32_t>(begins[symbol]); }
+  std::uint32_t share(unsigned symbol) const {
+    return static_cast<std::uint32_t>(begins[(symbol + 1) & 15] - begins[symbol]) & (kShares - 1);
+  }
+
+  // Moves every boundary 2^-rate of its way to the symbol's targets, rounded down. Shares stay positive: with R =
+  // 2^rate a boundary b with target t becomes floor(((R - 1) b + t) / R); boundaries at least 1 apart whose targets are
+  // at least 1 apart have numerators at least R apart.
+#ifdef __SSE4_1__
+  /// The symbol whose share holds `slot`.
+  unsigned find(std::uint32_t slot) const {
+    const __m128i key = _mm_set1_epi16(static_cast<short>(slot));
+    const __m128i above = _mm_packs_epi16(_mm_cmpgt_epi16(load(0), key), _mm_cmpgt_epi16(load(8), key));
+    // begins[0] = 0 is never above, so a bit below the first one above is there.
+    const auto mask = static_cast<std::uint32_t>(_mm_movemask_epi8(above)) | 0x10000u;
+    return static_cast<unsigned>(std::countr_zero(mask)) - 1;
+  }
+  void update(unsigned symbol, int rate) {
+    const __m128i count = _mm_cvtsi32_si128(rate);
+    for (std::size_t i = 0; i < 16; i += 8) {
+      const __m128i now = load(i);
+      const __m128i target = _mm_loadu_si128(reinterpret_cast<const __m128i*>(nibble::kTargets[symbol].data() + i));
+      const __m128i moved = _mm_add_epi16(now, _mm_sra_epi16(_mm_sub_epi16(target, now), count));
+      _mm_store_si128(reinterpret_cast<__m128i*>(begins.data() + i), moved);
+    }
+  }
+
+ private:
+  __m128i load(std::size_t i) const { return _mm_load_si128(reinterpret_cast<const __m128i*>(begins.data() + i)); }
+#else
+  unsigned find(std::uint32_t slot) const {
+    unsigned symbol = 15;
+    while (begin(symbol) > slot) --symbol;
+    return symbol;
+  }
+  void update(unsigned symbol, int rate) {
+    for (std::size_t i = 0; i < 16; ++i) {
+      const int now = begins[i], target = nibble::kTargets[symbol][i];
+      begins[i] = static_cast<std::int16_t>(now + ((target - now) >> rate));  // floor, also of negative numbers
+    }
+  }
+#endif
+};
+
+inline constexpr std::uint32_t kLowState = 1u << 16;  // states are at least this between symbols
+
+/// Takes down symbols with their models' shares, forwards; their bytes are made at the end, backwards.
+class NibbleEncoder {
+ public:
+  static constexpr bool kWrites = true;
+  unsigned symbol(NibbleModel& model, unsigned symbol, int rate) {
+    taken_.push_back(model.begin(symbol) << 16 | model.share(symbol));
+    model.update(symbol, rate);
+    return symbol;
+  }
+
+  std::vector<std::uint8_t> finish() const {
+    std::vector<std::uint16_t> reversed;
+    std::array<std::uint32_t, 2> states = {kLowState, kLowState};
+    for (std::size_t i = taken_.size(); i-- > 0;) {
+      std::uint32_t& state = states[i & 1];
+      const std::uint32_t begin = taken_[i] >> 16, share = taken_[i] & 0xFFFF;
+      // The quotient below must fit in 32 - kShareBits bits.
+      if (state >> (32 - kShareBits) >= share) {
+        reversed.push_back(static_cast<std::uint16_t>(state));
+        state >>= 16;
+      }
+      const auto quotient = static_cast<std::uint32_t>(state * nibble::kReciprocals[share] >> 46);
+      state = (quotient << kShareBits) + (state - quotient * share) + begin;
+    }
+    std::vector<std::uint8_t> bytes(8 + 2 * reversed.size());
+    std::memcpy(bytes.data(), states.data(), 8);
+    std::reverse(reversed.begin(), reversed.end());
+    if (!reversed.empty()) std::memcpy(bytes.data() + 8, reversed.data(), 2 * reversed.size());
+    return bytes;
+  }
+
+ private:
+  std::vector<std::uint32_t> taken_;
+};
+
+/// Gives the symbols back. Throws Damage when the bytes end too early.
+class NibbleDecoder {
+ public:
+  static constexpr bool kWrites = false;
+  explicit NibbleDecoder(std::span<const std::uint8_t> bytes) : next_(bytes.data()), end_(next_ + bytes.size()) {
+    if (bytes.size() < 8 || bytes.size() % 2 != 0) throw Damage{"is too short"};
+    std::memcpy(&state_, next_, 4);
+    std::memcpy(&other_, next_ + 4, 4);
+    next_ += 8;
+    if (state_ < kLowState || other_ < kLowState) throw Damage{"begins with no state of its coder"};
+  }
+
+  unsigned symbol(NibbleModel& model, unsigned /*truth*/, int rate) {
+    const std::uint32_t slot = state_ & (kShares - 1);
+    const unsigned symbol = model.find(slot);
+    std::uint32_t state = model.share(symbol) * (state_ >> kShareBits) + slot - model.begin(symbol);
+    model.update(symbol, rate);
+    if (state < kLowState) {
+      if (next_ == end_) throw Damage{"ends too early"};
+      std::uint16_t more;
+      std::memcpy(&more, next_, 2);
+      next_ += 2;
+      state = state << 16 | more;
+    }
+    state_ = other_;
+    other_ = state;
+    return symbol;
+  }
+
+  /// Everything that was written has been read, and nothing else.
+  void expect_end() const {
+    if (next_ != end_) throw Damage{"goes on after its last node"};
+    if (state_ != kLowState || other_ != kLowState) throw Damage{"does not end where its coder began"};
+  }
+
+ private:
+  const std::uint8_t *next_, *end_;
+  std::uint32_t state_ = 0, other_ = 0;
+};
+
+}  // namespace blackleaf::detail
