@@ -16,11 +16,15 @@ import subprocess
 import sys
 import tempfile
 
+import demands
+import tables
+
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RESULTS = os.path.join(ROOT, "bench", "results.json")
+TABLES = os.path.join(ROOT, "docs", "PERFORMANCE.md")
 PROGRAM = os.path.join(ROOT, "build", "bench", "bench", "blackleaf_bench")
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
-COUNTERS = {"bytes": "B", "voxels": "voxels"}
+COUNTERS = ("bytes", "voxels")  # what else than seconds a benchmark may report
 
 
 def fail(message):
@@ -110,47 +114,44 @@ def measure(program, key, contenders, repetitions, min_time):
     return {"ours": ours, "peers": medians, "unit": unit, "threads": threads}
 
 
-def shown(value, unit):
-    if unit in COUNTERS:
-        return f"{value:,.0f} {COUNTERS[unit]}"
-    for factor, name in ((1, "s"), (1e-3, "ms"), (1e-6, "us")):
-        if value >= factor:
-            return f"{value / factor:.3g} {name}"
-    return f"{value / 1e-9:.3g} ns"
-
-
 def ratio(value, ours):
     return f"{value / ours:.3g}" if ours else "-"
 
 
 def print_rows(key, result):
-    ours = shown(result["ours"], result["unit"])
+    ours = tables.shown(result["ours"], result["unit"])
     if not result["peers"]:
         print(f"{key:24} {ours:>14}")
     for who, value in result["peers"].items():
-        print(f"{key:24} {ours:>14}  {who:12} {shown(value, result['unit']):>14} {ratio(value, result['ours']):>10}")
+        print(f"{key:24} {ours:>14}  {who:12} {tables.shown(value, result['unit']):>14} {ratio(value, result['ours']):>10}")
     sys.stdout.flush()
 
 
+def in_order(results, keys):
+    """As the program lists them, whatever order they were made in."""
+    return {key: results[key] for key in keys if key in results}
+
+
 def write(results, keys):
-    order = [k for k in keys if k in results] + sorted(k for k in results if k not in keys)
-    lines = [f"  {json.dumps(k)}: {json.dumps(results[k])}" for k in order]
+    lines = [f"  {json.dumps(k)}: {json.dumps(v)}" for k, v in in_order(results, keys).items()]
     temporary = RESULTS + ".new"
     with open(temporary, "w", encoding="utf-8") as file:
         file.write("{\n" + ",\n".join(lines) + "\n}\n")
     os.replace(temporary, RESULTS)
 
 
-def main():
-    parser = argparse.ArgumentParser(prog="bench/compare", description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME")
-    parser.add_argument("--repetitions", type=int, default=5, help="how often each contender runs (default 5)")
-    parser.add_argument("--min-time", default="0.05", help="seconds a repetition lasts at least (default 0.05)")
-    parser.add_argument("--list", action="store_true", help="print the keys and who competes for them, and stop")
-    parser.add_argument("--program", help="a blackleaf_bench that is built already: nothing is installed or built")
-    options = parser.parse_args()
-    if options.repetitions < 1:
-        fail("--repetitions must be at least 1")
+def stored_results():
+    if not os.path.exists(RESULTS):
+        return {}
+    with open(RESULTS, encoding="utf-8") as file:
+        try:
+            return json.load(file)
+        except ValueError:
+            fail(f"{RESULTS} is not JSON; remove it")
+
+
+def measured_results(options):
+    """The stored results with the chosen figures made anew; None if they were only to be listed."""
     if not options.program:
         build()
     program = options.program or PROGRAM
@@ -161,20 +162,40 @@ def main():
     if options.list:
         for key in chosen:
             print(f"{key:24} {' '.join(keys[key])}")
-        return
-    results = {}
-    if os.path.exists(RESULTS):
-        with open(RESULTS, encoding="utf-8") as file:
-            try:
-                results = json.load(file)
-            except ValueError:
-                fail(f"{RESULTS} is not JSON; remove it")
-    results = {k: v for k, v in results.items() if k in keys}  # keys that are gone
+        return None
+    results = {k: v for k, v in stored_results().items() if k in keys}  # without keys that are gone
     print(f"{'figure':24} {'ours':>14}  {'peer':12} {'its':>14} {'peer/ours':>10}")
     for key in chosen:
         results[key] = measure(program, key, keys[key], options.repetitions, options.min_time)
         print_rows(key, results[key])
         write(results, keys)
+    return in_order(results, keys)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="bench/compare", description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--repetitions", type=int, default=5, help="how often each contender runs (default 5)")
+    parser.add_argument("--min-time", default="0.05", help="seconds a repetition lasts at least (default 0.05)")
+    parser.add_argument("--list", action="store_true", help="print the keys and who competes for them, and stop")
+    parser.add_argument("--program", help="a blackleaf_bench that is built already: nothing is installed or built")
+    parser.add_argument("--stored", action="store_true", help="measure nothing: take bench/results.json as it is")
+    parser.add_argument("--table", action="store_true", help="write the tables of docs/PERFORMANCE.md anew")
+    parser.add_argument("--check", action="store_true", help="tell which demands (bench/demands.py) hold; status 1 if one does not")
+    options = parser.parse_args()
+    if options.repetitions < 1:
+        fail("--repetitions must be at least 1")
+    if options.stored and (options.names or options.list):
+        fail("--stored goes with --table and --check only")
+    results = stored_results() if options.stored else measured_results(options)
+    if results is None:
+        return
+    if options.table:
+        tables.write(TABLES, results)
+    if options.check:
+        lines, all_hold = demands.report(results)
+        print("\n".join(lines))
+        sys.exit(0 if all_hold else 1)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,74 @@
+"""What Blackleaf demands of its own speed and size, and whether the stored figures hold it (bench/compare --check)."""
+
+MEGABYTE = 1e6
+NANOSECOND = 1e-9
+
+
+class Figures:
+    """Stored results; a figure that was not made is told by KeyError."""
+
+    def __init__(self, results):
+        self.results = results
+
+    def ours(self, key):
+        return self.results[key]["ours"]
+
+    def times(self, key, who):
+        """How many times ours the other takes."""
+        result = self.results[key]
+        return result["peers"][who] / result["ours"]
+
+    def two_threads(self, key):
+        """How far a figure of two threads is above what it must reach: 1 at 1.8 times one thread, or at 1.4 reads."""
+        speedup = self.ours(f"{key}/t1") / self.ours(f"{key}/t2")
+        return max(speedup / 1.8, 1.4 * self.times(f"{key}/t2", "read"))
+
+    def growth(self, smaller, larger):
+        return self.ours(larger) / self.ours(smaller)
+
+    def megabytes_a_second(self, key, side):
+        """Of in-memory octree."""
+        return self.ours(f"memory/{side}") / self.ours(f"{key}/{side}") / MEGABYTE
+
+
+def demands():
+    """(what, value of the figures, at least or at most, bound)"""
+    for side in ("512", "1024"):
+        key = f"voxels/{side}/t1"
+        yield f"{key}: its time in plain reads", lambda f, k=key: 1 / f.times(k, "read"), "at most", 1.3
+        yield f"{key}: OpenVDB, z fastest", lambda f, k=key: f.times(k, "openvdb-z"), "at least", 20
+        yield f"{key}: OpenVDB, same layout", lambda f, k=key: f.times(k, "openvdb"), "at least", 40
+        yield f"{key}: OctoMap", lambda f, k=key: f.times(k, "octomap"), "at least", 50
+        key = f"voxels/{side}"
+        yield f"{key}/t2: part of what two threads must reach", lambda f, k=key: f.two_threads(k), "at least", 1
+    for side in ("512", "1024"):
+        key = f"mesh/{side}/t1"
+        yield f"{key}: OpenVDB, half-width 1", lambda f, k=key: f.times(k, "openvdb-1"), "at least", 15
+        yield f"wrong/{side}: voxels", lambda f, k=f"wrong/{side}": f.ours(k), "at most", 0
+    yield "mesh: growth from 512 to 1024", lambda f: f.growth("mesh/512/t1", "mesh/1024/t1"), "at most", 4.3
+    yield "memory/1024: OpenVDB", lambda f: f.times("memory/1024", "openvdb"), "at least", 4
+    for side in ("512", "1024"):
+        for who in ("openvdb", "octomap", "bits-zstd", "octomap-zstd"):
+            yield f"file/{side}: {who}", lambda f, k=f"file/{side}", w=who: f.times(k, w), "at least", 1
+        for key in ("save", "load"):
+            yield f"{key}/{side}: MB/s", lambda f, k=key, s=side: f.megabytes_a_second(k, s), "at least", 200
+    yield "curve/decode: ns", lambda f: f.ours("curve/decode") / NANOSECOND, "at most", 12
+    yield "curve/encode: ns", lambda f: f.ours("curve/encode") / NANOSECOND, "at most", 12
+    yield "curve/walk: ns a voxel", lambda f: f.ours("curve/walk") / NANOSECOND, "at most", 1.5
+    yield "labels/atlas: million voxels/s", lambda f: 1e-6 / f.ours("labels/atlas"), "at least", 300
+
+
+def report(results):
+    """Lines for people, and whether all demands hold."""
+    figures, lines, all_hold = Figures(results), [], True
+    for what, value_of, relation, bound in demands():
+        try:
+            value = value_of(figures)
+        except KeyError:
+            verdict, shown = "not measured", "-"
+        else:
+            verdict = "holds" if (value <= bound if relation == "at most" else value >= bound) else "FAILS"
+            shown = f"{value:.3g}"
+        all_hold = all_hold and verdict == "holds"
+        lines.append(f"{what:48} {shown:>8}  {relation} {bound:<5g} {verdict}")
+    return lines, all_hold
