@@ -1,8 +1,10 @@
 #include "blackleaf/octree.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
+#include "brick.h"
 #include "node_arrays.h"
 #include "storage.h"
 
@@ -32,15 +34,26 @@ Node Octree::root() const {
   return Node(s.tree->levels.data(), *s.tree->levels[level], s.depth, Colour::gray);
 }
 
+// The descent of Node::child without a cursor: colours are told apart once, at the end.
 bool Octree::contains(std::int64_t x, std::int64_t y, std::int64_t z) const {
-  const std::int64_t n = side();
-  if (x < 0 || y < 0 || z < 0 || x >= n || y >= n || z >= n) return false;
-  Node node = root();
-  while (node.is_gray()) {
-    const int bit = node.level() - 1;
-    node = node.child(static_cast<int>((x >> bit & 1) | (y >> bit & 1) << 1 | (z >> bit & 1) << 2));
+  const Storage& s = *storage_;
+  if ((static_cast<std::uint64_t>(x) | static_cast<std::uint64_t>(y) | static_cast<std::uint64_t>(z)) >> s.depth != 0)
+    return false;
+  if (s.root != Colour::gray) return s.root == Colour::black;
+  const auto& levels = s.tree->levels;
+  auto level = static_cast<std::size_t>(s.depth);
+  std::uint64_t word = *levels[level];
+  for (; level > 2; --level) {
+    const std::size_t below = level - 1;
+    const auto octant = static_cast<unsigned>((x >> below & 1) | (y >> below & 1) << 1 | (z >> below & 1) << 2);
+    const std::uint64_t grays = word >> 8 & 0xFF;
+    if ((grays >> octant & 1) == 0) return word >> octant & 1;
+    const std::uint64_t before = grays & ((1u << octant) - 1);
+    word = levels[below][(word >> 16) + static_cast<unsigned>(std::popcount(before))];
   }
-  return node.is_black();
+  // A brick; the byte of a tree of depth 1 has its voxels where the first eight of a brick are.
+  const auto low = [](std::int64_t coordinate) { return static_cast<unsigned>(coordinate & 3); };
+  return word >> detail::brick_bit(low(x), low(y), low(z)) & 1;
 }
 
 std::span<const std::uint64_t> Octree::words(int level) const {

@@ -99,6 +99,28 @@ TEST(Octree, CursorReachesEveryLevel) {
   }
 }
 
+TEST(Octree, ContainsAgreesWithTheGridAndWithTheCursorInsideAndOutside) {
+  std::mt19937 random(17);
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    const DenseGrid grid = reference::random_solid(1 + trial % 5, random);
+    const Octree octree = reference::octree(grid);
+    grid.for_each([&](int x, int y, int z, bool black) {
+      Node node = octree.root();
+      for (int bit = grid.depth - 1; bit >= 0; --bit)
+        node = node.child((x >> bit & 1) + 2 * (y >> bit & 1) + 4 * (z >> bit & 1));
+      ASSERT_EQ(node.is_black(), black);
+      ASSERT_EQ(octree.contains(x, y, z), black);
+    });
+    const std::int64_t far[] = {-1, grid.side(), INT64_MIN, INT64_MAX, std::int64_t{1} << 32};
+    for (const std::int64_t at : far) {
+      EXPECT_FALSE(octree.contains(at, 0, 0));
+      EXPECT_FALSE(octree.contains(0, at, 0));
+      EXPECT_FALSE(octree.contains(0, 0, at));
+    }
+  }
+}
+
 TEST(Octree, CopiesShareAndFramesTravel) {
   Frame frame;
   frame.origin = {1, 2, 3};
