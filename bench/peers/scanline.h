@@ -8,8 +8,8 @@
 
 namespace blackleaf::bench {
 
-/// The bunny in a universe of the given depth as bytes 0 and 1, x fastest. O(voxels + columns that triangles cover).
-std::vector<std::uint8_t> scanline_bunny(int depth);
+/// The bunny in a universe of the given depth as bytes 0 and 1, x fastest. O(voxels + rows that triangles cover).
+void scanline_bunny(int depth, std::vector<std::uint8_t>& voxels);
 
 /// Compares a solid, told as disjoint boxes of black voxels, with scanline_bunny.
 class WrongVoxels {
