@@ -80,6 +80,9 @@ class Node {
   /// The stored word of a gray node (see the head of this file). Requires: is_gray().
   std::uint64_t word() const { return word_; }
 
+  /// The gray node of another level with this word, of the tree that this node belongs to. Requires: the tree has it.
+  Node relative(int level, std::uint64_t word) const { return Node(levels_, word, level, Colour::gray); }
+
   /// A node of one colour that belongs to no tree, e.g. the space outside a universe.
   static Node uniform(int level, Colour colour) { return Node(nullptr, 0, level, colour); }
   /// A node of level 2 that belongs to no tree, from its 64 voxels.

@@ -29,19 +29,21 @@ class VoxelRows {
   /// kMaxLength voxels long; every cell it meets is in the window.
   template <int kWidth>
   VoxelRows(const SourceWindow<kWidth>& window, const VoxelRange& range) : origin_(range.low) {
-    std::array<std::int64_t, 3> first, last;  // bricks
-    for (std::size_t i = 0; i < 3; ++i) {
-      assert(range.high[i] - range.low[i] < kMaxLength);
-      first[i] = range.low[i] >> 2;
-      last[i] = range.high[i] >> 2;
-    }
-    for (std::int64_t z = first[2]; z <= last[2]; ++z)
-      for (std::int64_t y = first[1]; y <= last[1]; ++y)
-        for (std::int64_t x = first[0]; x <= last[0]; ++x) {
-          const Node& cell = window.node(x >> 1, y >> 1, z >> 1);
+    assert(range.high[0] - range.low[0] < kMaxLength && range.high[1] - range.low[1] < kMaxLength &&
+           range.high[2] - range.low[2] < kMaxLength);
+    for (std::int64_t z = range.low[2] >> 3; z <= range.high[2] >> 3; ++z)
+      for (std::int64_t y = range.low[1] >> 3; y <= range.high[1] >> 3; ++y)
+        for (std::int64_t x = range.low[0] >> 3; x <= range.high[0] >> 3; ++x) {
+          const Node cell = window.node(x, y, z);
           if (cell.is_white()) continue;
-          const Node node = cell.child(static_cast<int>((x & 1) | (y & 1) << 1 | (z & 1) << 2));
-          if (!node.is_white()) put(node.brick(), 4 * x - origin_[0], 4 * y - origin_[1], 4 * z - origin_[2]);
+          for (int octant = 0; octant < 8; ++octant) {
+            const std::int64_t bx = 2 * x + (octant & 1), by = 2 * y + (octant >> 1 & 1), bz = 2 * z + (octant >> 2);
+            if (bx < range.low[0] >> 2 || bx > range.high[0] >> 2 || by < range.low[1] >> 2 ||
+                by > range.high[1] >> 2 || bz < range.low[2] >> 2 || bz > range.high[2] >> 2)
+              continue;
+            const Node node = cell.child(octant);
+            if (!node.is_white()) put(node.brick(), 4 * bx - origin_[0], 4 * by - origin_[1], 4 * bz - origin_[2]);
+          }
         }
   }
 
