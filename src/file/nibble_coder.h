@@ -85,11 +85,10 @@ struct alignas(16) NibbleModel {
     return static_cast<unsigned>(std::countr_zero(mask)) - 1;
   }
   void update(unsigned symbol, int rate) {
-    const __m128i count = _mm_cvtsi32_si128(rate);
     for (std::size_t i = 0; i < 16; i += 8) {
       const __m128i now = load(i);
       const __m128i target = _mm_loadu_si128(reinterpret_cast<const __m128i*>(nibble::kTargets[symbol].data() + i));
-      const __m128i moved = _mm_add_epi16(now, _mm_sra_epi16(_mm_sub_epi16(target, now), count));
+      const __m128i moved = _mm_add_epi16(now, _mm_srai_epi16(_mm_sub_epi16(target, now), rate));
       _mm_store_si128(reinterpret_cast<__m128i*>(begins.data() + i), moved);
     }
   }
@@ -117,6 +116,7 @@ inline constexpr std::uint32_t kLowState = 1u << 16;  // states are at least thi
 class NibbleEncoder {
  public:
   static constexpr bool kWrites = true;
+  using InHand = NibbleEncoder&;
   unsigned symbol(NibbleModel& model, unsigned symbol, int rate) {
     taken_.push_back(model.begin(symbol) << 16 | model.share(symbol));
     model.update(symbol, rate);
@@ -152,6 +152,7 @@ class NibbleEncoder {
 class NibbleDecoder {
  public:
   static constexpr bool kWrites = false;
+  using InHand = NibbleDecoder;  // a copy that a loop can keep in registers
   explicit NibbleDecoder(std::span<const std::uint8_t> bytes) : next_(bytes.data()), end_(next_ + bytes.size()) {
     if (bytes.size() < 8 || bytes.size() % 2 != 0) throw Damage{"is too short"};
     std::memcpy(&state_, next_, 4);
@@ -160,7 +161,7 @@ class NibbleDecoder {
     if (state_ < kLowState || other_ < kLowState) throw Damage{"begins with no state of its coder"};
   }
 
-  unsigned symbol(NibbleModel& model, unsigned /*truth*/, int rate) {
+  [[gnu::always_inline]] unsigned symbol(NibbleModel& model, unsigned /*truth*/, int rate) {
     const std::uint32_t slot = state_ & (kShares - 1);
     const unsigned symbol = model.find(slot);
     std::uint32_t state = model.share(symbol) * (state_ >> kShareBits) + slot - model.begin(symbol);

@@ -130,25 +130,43 @@ class Walk {
     const std::array<std::uint64_t, 3> before = {behind[0]->word, behind[1]->word, behind[2]->word};
     const std::uint64_t true_bits = Coder::kWrites ? truth.brick() : 0;
     std::uint64_t bits = 0;
-    (add_byte<kOctants>(bits, before, static_cast<unsigned>(true_bits >> (8 * kOctants) & 0xFF)), ...);
+    // Coder and pointers in hand, so that the models' stores are not feared to change them.
+    typename Coder::InHand coder = coder_;
+    NibbleModel* const models = models_.bytes.data();
+    const CornerModel& corners = corners_;
+    (add_byte<kOctants>(coder, models, corners, bits, before,
+                        static_cast<unsigned>(true_bits >> (8 * kOctants) & 0xFF)),
+     ...);
+    put_back(coder);
     if (bits == 0 || ~bits == 0) throw Damage{"has a brick of one colour"};
     return {bits, 0, kGray};
   }
 
+  void put_back(typename Coder::InHand& coder) {
+    if constexpr (!Coder::kWrites) coder_ = coder;
+  }
+
   template <unsigned kOctant>
-  void add_byte(std::uint64_t& bits, const std::array<std::uint64_t, 3>& before, unsigned truth) {
+  [[gnu::always_inline]] void add_byte(typename Coder::InHand& coder, NibbleModel* models, const CornerModel& corners,
+                                       std::uint64_t& bits, const std::array<std::uint64_t, 3>& before,
+                                       unsigned truth) {
     const auto behind = [&](unsigned axis) {
       const std::uint64_t from = kOctant >> axis & 1 ? bits : before[axis];
       return static_cast<unsigned>(from >> (8 * (kOctant ^ 1u << axis)) & 0xFF);
     };
-    const unsigned faces = corners_.faces(behind(0), behind(1), behind(2));
-    const unsigned rank = coder_.symbol(models_.bytes[corners_.context(faces)],
-                                        Coder::kWrites ? corners_.rank(faces, truth) : 0, kByteRate);
-    const unsigned byte = rank < 15 ? corners_.byte(faces, rank) : rare_byte(faces, truth);
+    const unsigned faces = corners.faces(behind(0), behind(1), behind(2));
+    const unsigned rank =
+        coder.symbol(models[corners.context(faces)], Coder::kWrites ? corners.rank(faces, truth) : 0, kByteRate);
+    unsigned byte = corners.byte(faces, rank);
+    if (rank == 15) [[unlikely]] {
+      put_back(coder);
+      byte = rare_byte(faces, truth);
+      if constexpr (!Coder::kWrites) coder = coder_;
+    }
     bits |= std::uint64_t{byte} << (8 * kOctant);
   }
 
-  unsigned rare_byte(unsigned faces, unsigned truth) {
+  [[gnu::noinline]] unsigned rare_byte(unsigned faces, unsigned truth) {
     const unsigned upper = coder_.symbol(models_.rare[16], truth >> 4, kByteRate);
     const unsigned byte = upper << 4 | coder_.symbol(models_.rare[upper], truth & 15, kByteRate);
     if (corners_.rank(faces, byte) < 15) throw Damage{"tells of likely voxels in the way of unlikely ones"};
@@ -163,20 +181,24 @@ class Walk {
     const std::size_t set = 1024 * static_cast<std::size_t>(std::min(level, 5) - 3);
     std::array<unsigned, 4> pairs{};
     unsigned black = 0, gray = 0;
+    typename Coder::InHand coder = coder_;
+    NibbleModel* const models = models_.pairs.data() + set;
+    std::uint8_t* const all_symbols = models_.pair_symbols.data() + set;
     for (unsigned i = 0; i < 4; ++i) {  // the octants 2i and 2i + 1
       const unsigned x = behind[0]->faces >> (2 * i) & 3;
       const unsigned y = i & 1 ? pairs[i ^ 1] : behind[1]->faces >> (8 + 2 * i) & 15;
       const unsigned z = i & 2 ? pairs[i ^ 2] : behind[2]->faces >> (16 + 4 * i) & 15;
-      const std::size_t at = set + (x | y << 2 | z << 6);
-      std::uint8_t& symbols = models_.pair_symbols[at];
+      const unsigned at = x | y << 2 | z << 6;
+      std::uint8_t& symbols = all_symbols[at];
       const int rate = std::min(kLastPairRate, kFirstPairRate + symbols / kSymbolsPerRate);
       symbols = static_cast<std::uint8_t>(symbols + (symbols < 255));
-      const unsigned pair = coder_.symbol(models_.pairs[at], true_colour(2 * i) | true_colour(2 * i + 1) << 2, rate);
+      const unsigned pair = coder.symbol(models[at], true_colour(2 * i) | true_colour(2 * i + 1) << 2, rate);
       if ((pair & 3) == 3 || pair >= 12) throw Damage{"has a node of unknown colour"};
       pairs[i] = pair;
       black |= ((pair & 1) | (pair >> 1 & 2)) << (2 * i);
       gray |= ((pair >> 1 & 1) | (pair >> 2 & 2)) << (2 * i);
     }
+    put_back(coder);
     if (gray == 0 && (black == 0 || black == 0xFF)) throw Damage{"has a node of one colour"};
 
     std::array<Known, 8> children;
