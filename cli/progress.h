@@ -14,7 +14,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Shows the fraction done, in [0, 1]; at most ten times a second, not at all in the first second.
+  /// Shows the fraction done, in [0, 1], and how long the rest will take at the speed so far; at most ten times a
+  /// second, not at all in the first second.
   void show(double fraction);
   /// Takes the bar off the screen.
   void clear();
@@ -25,6 +26,7 @@ class ProgressBar {
   std::string label_;
   bool wanted_;
   bool drawn_ = false;
+  Clock::time_point start_ = Clock::now();
   Clock::time_point next_;
 };
 

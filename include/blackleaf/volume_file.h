@@ -21,10 +21,15 @@ struct VolumeOptions {
   bool centre = false;  // centre the volume in the universe instead of putting it at the corner
 };
 
-/// The octree of a volume file; its frame is the file's geometry (ITK's LPS convention, unit mm; for universe corner,
-/// not first voxel centre). Throws Error(io) when the file cannot be read, Error(bad_input) when it is not a volume,
-/// has no voxels, not three dimensions (trailing dimensions of one are fine), several components a voxel, or does not
-/// fit the universe.
+/// The octree of a volume file. Raw values and those under gzip or zlib are read a few slices at a time, so memory
+/// holds the octree and about 16 MiB of slices (four slices twice, if larger, or one twice from 64 MiB on); values as
+/// text, hex, under bzip2 or in several files are read in one piece. Values are whatever the format means by them
+/// (NIfTI's slope and intercept are applied). Its frame is the file's geometry (ITK's LPS convention, unit mm; for
+/// universe corner, not first voxel centre). Throws Error(io) when the file cannot be read, Error(bad_input) when it is
+/// not a volume, has no voxels, not three dimensions (trailing dimensions of one are fine), several components a voxel,
+/// does not fit the universe, has only NaN for values, fewer values than its header tells, a whole slice more of them,
+/// or compressed ones whose checksum is wrong; Error(cancelled) when progress refuses. Progress is the fraction of
+/// slices.
 Octree read_volume(const std::filesystem::path& path, const VolumeOptions& options = {}, const Work& work = {});
 
 /// True iff the suffix is one that volumes have: .nrrd .nhdr .nii .nii.gz .mha .mhd .hdr .img(.gz) ...

@@ -107,6 +107,58 @@ TEST_F(VolumeDamage, CompressedDataDamaged) {
   }
 }
 
+std::string gzipped(const std::string& bytes) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(deflateBound(&stream, bytes.size()) + 32, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<unsigned>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<unsigned>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+// What stands behind the values may be padding; a slice more than the header tells is a header that is wrong.
+TEST_F(VolumeDamage, MoreOrFewerValuesThanTold) {
+  const std::string values = [] {
+    std::mt19937 random(12);
+    std::string bytes(20 * 10 * 6, '\0');
+    for (char& c : bytes) c = static_cast<char>(random() % 2);
+    return bytes;
+  }();
+  const std::string raw = test::nrrd_header("uint8", "20 10 6", 3) + "\n";
+  const std::string gzip = test::nrrd_header("uint8", "20 10 6", 3, "", "gzip") + "\n";
+  test::write_file(folder_ / "z.nrrd", raw + values);
+  const Octree octree = read_volume(folder_ / "z.nrrd");
+  EXPECT_FALSE(octree.is_empty());
+  const auto same = [&](const std::string& contents) {
+    test::write_file(folder_ / "z.nrrd", contents);
+    EXPECT_TRUE(read_volume(folder_ / "z.nrrd") == octree);
+  };
+  same(gzip + gzipped(values));
+  same(raw + values + std::string(199, 'x'));
+  same(gzip + gzipped(values + std::string(199, 'x')));
+  same(gzip + gzipped(values) + "and so on, no gzip");
+  same(gzip + gzipped(values) + std::string(5000, '\0'));
+  // Two members, cut anywhere.
+  for (const std::size_t cut : {std::size_t{0}, std::size_t{1}, std::size_t{700}, values.size()})
+    same(gzip + gzipped(values.substr(0, cut)) + gzipped(values.substr(cut)));
+  same(gzip + gzipped(values) + gzipped("a second member"));
+
+  refuse("z.nrrd", raw + values + std::string(200, 'x'), {"tells of 6 slices, but there are values for more"});
+  refuse("z.nrrd", gzip + gzipped(values + std::string(200, 'x')), {"6 slices, but there are values for more"});
+  refuse("z.nrrd", gzip + gzipped(values) + gzipped(values), {"6 slices, but there are values for more"});
+  refuse("z.nrrd", gzip + gzipped(values.substr(1)), {"1199 bytes, fewer than its header tells of"});
+  refuse("z.nrrd", gzip + gzipped(values.substr(1)) + "garbage", {"damaged after 1199 bytes"});
+  refuse("z.nrrd", gzip + "no gzip at all", {"damaged after 0 bytes"});
+  const std::string packed = gzipped(values);
+  for (std::size_t length = 2; length < packed.size(); ++length)  // its last eight bytes are checksums
+    refuse("z.nrrd", gzip + packed.substr(0, length), {"compressed values"});
+}
+
 TEST_F(VolumeDamage, NothingButNaN) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   test::write_nrrd<float>(folder_ / "a.nrrd", "float", "2 2 2", std::vector<float>(8, nan));
