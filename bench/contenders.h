@@ -54,6 +54,7 @@ void add_interference();
 void add_drawing();
 void add_curve();
 void add_file();
+void add_labels();
 // One function a peer, each in a file of its own in peers/.
 void add_scanline();
 void add_openvdb();

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   add_drawing();
   add_curve();
   add_file();
+  add_labels();
   add_scanline();
   add_openvdb();
   add_octomap();

@@ -28,6 +28,7 @@ void declare(CLI::App& app, BuildOptions& o) {
 
   declare_mesh_options(app, o, like);
   declare_volume_options(app, o, like);
+  declare_label_options(app, o);
 }
 
 Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
@@ -37,20 +38,28 @@ Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Oc
                   {o.voxel_size.has_value(), "--voxel-size"},
                   {o.rule.has_value(), "--rule"},
                   {o.range.has_value(), "--range"},
-                  {o.label.has_value(), "--label"},
                   {o.centre, "--centre"}});
-  Octree octree = session.stage("build", [&](const Work&) { return read_runs(o.input); });
+  Octree octree = session.stage("build", [&](const Work&) {
+    if (!o.label) return read_runs(o.input);
+    // A label that is no whole number is that of no voxel.
+    const LabelMap labels = read_label_runs(o.input);
+    return octree_from_labels(labels, [&](std::uint32_t label) { return static_cast<double>(label) == *o.label; });
+  });
   facts["depth"] = octree.depth();
-  if (!like) return octree;
-  facts["like"] = base_name(*o.like);
-  if (like->depth() != octree.depth())
-    throw Error(ErrorCode::bad_input,
-                fmt::format("'{}' has depth {} and '{}' has depth {}", o.input, octree.depth(), *o.like, like->depth()),
-                "a run stream fits only universes of its own depth");
-  return octree.with_frame(like->frame());
+  if (o.label) facts["label"] = *o.label;
+  return like ? octree.with_frame(frame_for_runs(o, *like, octree.depth(), facts)) : octree;
 }
 
 }  // namespace
+
+Frame frame_for_runs(const BuildOptions& o, const Octree& like, int depth, Json& facts) {
+  facts["like"] = base_name(*o.like);
+  if (like.depth() != depth)
+    throw Error(ErrorCode::bad_input,
+                fmt::format("'{}' has depth {} and '{}' has depth {}", o.input, depth, *o.like, like.depth()),
+                "a run stream fits only universes of its own depth");
+  return like.frame();
+}
 
 void refuse_options(const std::string& input, const std::string& kind,
                     std::initializer_list<std::pair<bool, const char*>> options) {
@@ -66,7 +75,8 @@ int run_build(Session& session) {
   session.add_json();
   session.set_example(
       "blackleaf build bunny.stl -o bunny.octree --depth 9\n"
-      "  blackleaf build head.nii.gz -o bone.octree --range 300:");
+      "  blackleaf build head.nii.gz -o bone.octree --range 300:\n"
+      "  blackleaf build atlas.nii.gz -o atlas.octree --labels");
   if (!session.parse()) return kDone;
 
   check_octree_output(session, o.output);
@@ -76,10 +86,14 @@ int run_build(Session& session) {
   if (o.like) like = read_octree(session, *o.like).octree;
 
   Json facts = Json::object();
-  Octree octree;
   if (suffix_of(o.input) == ".octree")
     throw Error(ErrorCode::bad_argument, fmt::format("'{}' is an octree already", o.input),
                 "use move, combine or export");
+  if (o.labels || o.bands) {
+    write_labels(session, build_labels(session, o, like, facts), o.output, o.input, facts);
+    return kDone;
+  }
+  Octree octree;
   if (suffix_of(o.input) == ".runs")
     octree = from_runs(session, o, like, facts);
   else if (is_volume_name(o.input))

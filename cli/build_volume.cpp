@@ -39,7 +39,7 @@ void declare_volume_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
                                 "values inside, ends included; either may be empty (default: any value above 0)");
   CLI::Option* label = app.add_option_function<std::string>(
                               "--label", [&o](const std::string& text) { o.label = parse_number("--label", text); },
-                              "exactly this value is inside")
+                              "exactly this value is inside (also of run streams)")
                            ->type_name("L");
   range->group(volumes)->excludes(label);
   label->group(volumes);

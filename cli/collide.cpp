@@ -59,6 +59,7 @@ std::string as_text(const Answer& answer) {
 }  // namespace
 
 int run_collide(Session& session) {
+  Label first_label, second_label;
   std::string first_name, second_name;
   bool exact = false;
   MotionOptions motion_options;
@@ -66,11 +67,13 @@ int run_collide(Session& session) {
   add_octree_input(session.app(), "B", second_name, "octree file of the same depth");
   motion_options.add_to(session.app(), "B");
   session.app().add_flag("--exact", exact, "take the moved B as tilted cubes, not as voxels; no volume or distance");
+  add_label(session.app(), first_label, "--label-a", "of a file A of many labels: the solid of this one");
+  add_label(session.app(), second_label, "--label-b", "the same of B");
   session.add_json();
   session.set_example("blackleaf collide room.octree robot.octree --rotate 0,0,1:45 --about centroid");
   if (!session.parse()) return kDone;
 
-  const std::pair<Octree, Octree> pair = read_pair(session, first_name, second_name);
+  const std::pair<Octree, Octree> pair = read_pair(session, first_name, first_label, second_name, second_label);
   const Octree& a = pair.first;
   const Octree& b = pair.second;
   Answer answer;

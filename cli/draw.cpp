@@ -55,6 +55,7 @@ PageOptions page_for(const LineDrawing& drawing, const PageText& text, const Pag
 }  // namespace
 
 int run_draw(Session& session) {
+  Label label;
   std::string input, view_text, output;
   std::optional<std::string> format;
   PageText page_text;
@@ -69,6 +70,7 @@ int run_draw(Session& session) {
   add_text(session.app(), "--size", page_text.size, "SIZE",
            "page: A0 to A6, turned to suit the picture, or WxH in mm (default: the drawing's shape, 180 mm)");
   add_number(session.app(), "--pen-width", page_text.pen_width, true, "width of the lines in mm (default 0.25)");
+  add_label(session.app(), label);
   session.add_json();
   session.set_example("blackleaf draw bunny.octree --view 3,-4,2 -o bunny.svg");
   if (!session.parse()) return kDone;
@@ -92,7 +94,7 @@ int run_draw(Session& session) {
     throw Error(ErrorCode::bad_argument, "-o - and --json both want standard output", "write the picture to a file");
   if (output != "-") check_output(output);
 
-  const Octree octree = read_octree(session, input).octree;
+  const Octree octree = read_solid(session, input, label);
   const LineDrawing drawing = session.stage("draw", [&](const Work& work) { return draw(octree, view, work); });
   const PageOptions page = page_for(drawing, page_text, size);
   const double length = drawing.length();

@@ -154,11 +154,12 @@ OctreeFile read_octree(Session& session, const std::string& path) {
   });
 }
 
-std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const std::string& b) {
+std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const Label& a_label, const std::string& b,
+                                    const Label& b_label) {
   if (a == "-" && b == "-")
     throw Error(ErrorCode::bad_argument, "both octrees are - for standard input", "name a file for one of them");
-  const Octree first = read_octree(session, a).octree;
-  const Octree second = read_octree(session, b).octree;
+  const Octree first = read_solid(session, a, a_label);
+  const Octree second = read_solid(session, b, b_label);
   if (first.depth() != second.depth())
     throw Error(ErrorCode::bad_argument,
                 fmt::format("'{}' has depth {} and '{}' has depth {}", a, first.depth(), b, second.depth()),
@@ -175,20 +176,28 @@ void warn_if_empty(const Session& session, const Octree& octree) {
   if (octree.is_empty()) session.warn("no voxel is black");
 }
 
-void write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
-                  const Json& options, const Json& more, const std::string& before) {
+std::string metadata_text(const Session& session, const std::string& source, const Json& options) {
   const Json metadata = {{"program", "blackleaf"},
                          {"version", BLACKLEAF_VERSION},
                          {"source", base_name(source)},
                          {"command", session.command()},
                          {"options", options}};
-  const std::string text = metadata.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return metadata.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void print_octree_bytes(Session& session, const std::function<std::vector<std::uint8_t>()>& bytes) {
+  session.write_stage([&] {
+    const std::vector<std::uint8_t> made = bytes();
+    check_interrupt();
+    print_out(std::string(made.begin(), made.end()));
+  });
+}
+
+void write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
+                  const Json& options, const Json& more, const std::string& before) {
+  const std::string text = metadata_text(session, source, options);
   if (path == "-") {
-    session.write_stage([&] {
-      const std::vector<std::uint8_t> bytes = to_bytes(octree, text);
-      check_interrupt();
-      print_out(std::string(bytes.begin(), bytes.end()));
-    });
+    print_octree_bytes(session, [&] { return to_bytes(octree, text); });
     return;
   }
   const bool telling = session.json() || !session.quiet();

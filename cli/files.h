@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "blackleaf/octree.h"
 #include "blackleaf/octree_file.h"
+#include "labels.h"
 #include "session.h"
 
 namespace blackleaf::cli {
@@ -33,13 +35,19 @@ void check_octree_output(const Session& session, const std::string& path);
 
 /// Loads an octree, as stage "read".
 OctreeFile read_octree(Session& session, const std::string& path);
-/// Loads two octrees that are to be compared voxel by voxel. Throws Error(bad_argument) when their depths differ; warns
-/// when their frames do.
-std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const std::string& b);
+/// Loads two solids that are to be compared voxel by voxel, as read_solid() does. Throws Error(bad_argument) when their
+/// depths differ; warns when their frames do.
+std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const Label& a_label, const std::string& b,
+                                    const Label& b_label);
 /// All bytes of a file, or of standard input for "-". Throws Error(io).
 std::vector<std::uint8_t> read_bytes(const std::string& path);
 /// True iff the bytes begin as those of an octree file do, whatever follows.
 bool is_octree_data(const std::vector<std::uint8_t>& bytes);
+
+/// What an octree file says of where it comes from: program, command, source (the input as typed) and options.
+std::string metadata_text(const Session& session, const std::string& source, const Json& options);
+/// Sends what `bytes` returns to standard output, as stage "write".
+void print_octree_bytes(Session& session, const std::function<std::vector<std::uint8_t>()>& bytes);
 
 /// Saves an octree, as stage "write", with metadata that say which program, command, source and options made it.
 /// `source` is the input as typed. Then tells what was written: one line, or with --json an object that starts with the

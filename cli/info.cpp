@@ -4,6 +4,7 @@
 #include "blackleaf/measures.h"
 #include "commands.h"
 #include "files.h"
+#include "labels.h"
 
 namespace blackleaf::cli {
 namespace {
@@ -37,6 +38,25 @@ Json as_json(const OctreeFile& file, const Measures& measures) {
   // Metadata that are not JSON after all are shown as they are.
   if (report["metadata"].is_discarded()) report["metadata"] = file.metadata;
   return report;
+}
+
+Json as_json(const std::vector<LabelFacts>& labels) {
+  Json list = Json::array();
+  for (const LabelFacts& facts : labels)
+    list.push_back({{"label", facts.label},
+                    {"volume", facts.volume},
+                    {"bounding_box", {facts.bounding_box.min, facts.bounding_box.max}}});
+  return list;
+}
+
+std::string as_text(const LabelMap& map, const std::vector<LabelFacts>& labels) {
+  std::string text =
+      fmt::format("  {:<16}{} in {} on the Millar curve, {} in memory\n", "labels", grouped(labels.size()),
+                  counted(map.run_count(), "run"), counted(map.memory_bytes(), "byte"));
+  for (const auto& [label, volume, box] : labels)
+    text += fmt::format("  {:>14}  {}, ({}, {}, {}) to ({}, {}, {})\n", label, counted(volume, "voxel"), box.min[0],
+                        box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]);
+  return text;
 }
 
 std::string as_text(const std::string& name, const OctreeFile& file, const Measures& measures) {
@@ -75,17 +95,31 @@ std::string as_text(const std::string& name, const OctreeFile& file, const Measu
 
 int run_info(Session& session) {
   std::string input;
+  Label label;
   add_octree_input(session.app(), "FILE", input);
+  add_label(session.app(), label);
   session.add_json();
   session.set_example("blackleaf info bunny.octree --json");
   if (!session.parse()) return kDone;
 
-  const OctreeFile file = read_octree(session, input);
+  OctreeFile file = read_octree(session, input);
+  if (label && !file.labels) refuse_label(input);
+  if (label) file.octree = session.stage("read", [&](const Work&) { return solid_of(*file.labels, *label, input); });
   const Measures measures = session.stage("measure", [&](const Work&) { return measure(file.octree); });
-  if (session.json())
-    print_out(as_json(file, measures));
-  else
-    print_out(as_text(base_name(input), file, measures));
+  std::vector<LabelFacts> labels;
+  if (file.labels && !label) labels = session.stage("measure", [&](const Work&) { return label_facts(*file.labels); });
+  if (session.json()) {
+    Json report = as_json(file, measures);
+    if (label) report["label"] = *label;
+    if (file.labels && !label) {
+      report["label_runs"] = file.labels->run_count();
+      report["labels"] = as_json(labels);
+    }
+    print_out(report);
+  } else {
+    const std::string name = base_name(input) + (label ? fmt::format(", label {}", *label) : "");
+    print_out(as_text(name, file, measures) + (file.labels && !label ? as_text(*file.labels, labels) : ""));
+  }
   return kDone;
 }
 

@@ -40,6 +40,7 @@ Json row(const Measures& m) {
 }  // namespace
 
 int run_move(Session& session) {
+  Label label;
   std::string input, output;
   bool stats = false;
   MotionOptions motion_options;
@@ -48,6 +49,7 @@ int run_move(Session& session) {
   add_output(session.app(), output, "octree file to write, or - for standard output");
   motion_options.add_to(session.app(), "the solid");
   leaving.add_to(session.app());
+  add_label(session.app(), label);
   session.app().add_flag("--stats", stats, "report WA87's Table 2: B, I, M, V, I/V of source and target");
   session.add_json();
   session.set_example(
@@ -55,7 +57,7 @@ int run_move(Session& session) {
   if (!session.parse()) return kDone;
 
   check_octree_output(session, output);
-  const Octree source = read_octree(session, input).octree;
+  const Octree source = read_solid(session, input, label);
   const Motion motion = motion_options.motion(source);
   if (!motion_options.moves())
     session.warn("no motion is given, so the solid stays where it is; give --rotate, --translate or --matrix");
@@ -64,6 +66,7 @@ int run_move(Session& session) {
   warn_if_empty(session, target);
   Json options = motion_options.as_json(motion);
   options["leaving"] = leaving.name();
+  if (label) options["label"] = *label;
   Json more = Json::object();
   std::string rows;
   if (stats && (session.json() || output != "-")) {

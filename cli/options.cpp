@@ -73,6 +73,16 @@ Eigen::Vector3d parse_vector(const std::string& option, const std::string& text)
   return vector;
 }
 
+std::vector<double> parse_numbers(const std::string& option, const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, ',')) {
+    const auto value = finite_in(part);
+    if (!value) refuse(option, text, "a list of finite numbers", "write a,b,... without spaces, like -200,100,300");
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
 std::array<std::int64_t, 3> parse_integer_vector(const std::string& option, const std::string& text) {
   const auto parts = split(text, ',');
   std::array<std::int64_t, 3> vector{};

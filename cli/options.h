@@ -20,6 +20,8 @@ double parse_number(const std::string& option, const std::string& text);
 std::int64_t parse_integer(const std::string& option, const std::string& text, std::int64_t low, std::int64_t high);
 /// `x,y,z`: exactly three finite numbers, no spaces.
 Eigen::Vector3d parse_vector(const std::string& option, const std::string& text);
+/// `a,b,...`: one finite number or more.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text);
 /// `x,y,z`: exactly three whole numbers.
 std::array<std::int64_t, 3> parse_integer_vector(const std::string& option, const std::string& text);
 /// `x,y,z:degrees`, a rotation about the corner.

@@ -130,6 +130,10 @@ void Session::warn(const std::string& message) const {
   if (!quiet_) fmt::print(stderr, "blackleaf: warning: {}\n", message);
 }
 
+void Session::note(const std::string& message) const {
+  if (!quiet_) fmt::print(stderr, "blackleaf: note: {}\n", message);
+}
+
 void Session::print_timings() const {
   if (!timings_) return;
   Json times;

@@ -59,8 +59,9 @@ class Session {
     return std::forward<Function>(function)();
   }
 
-  /// One line on standard error, not under --quiet.
+  /// One line on standard error, not under --quiet: of what may be a mistake; of what is only good to know.
   void warn(const std::string& message) const;
+  void note(const std::string& message) const;
   /// Prints --timings, if asked for.
   void print_timings() const;
 

@@ -8,23 +8,27 @@
 namespace blackleaf::cli {
 
 int run_translate(Session& session) {
+  Label label;
   std::string input, by_text, output;
   LeavingOptions leaving;
   add_octree_input(session.app(), "FILE", input);
   session.app().add_option("BY", by_text, "dx,dy,dz: whole voxels")->required()->type_name("");
   add_output(session.app(), output, "octree file to write, or - for standard output");
   leaving.add_to(session.app());
+  add_label(session.app(), label);
   session.add_json();
   session.set_example("blackleaf translate bunny.octree -10,0,4 -o shifted.octree");
   if (!session.parse()) return kDone;
 
   const auto by = parse_integer_vector("displacement", by_text);
   check_octree_output(session, output);
-  const Octree source = read_octree(session, input).octree;
+  const Octree source = read_solid(session, input, label);
   const Octree target =
       session.stage("move", [&](const Work& work) { return translate(source, by, leaving.choice(), work); });
   warn_if_empty(session, target);
-  write_octree(session, target, output, input, {{"by", by}, {"leaving", leaving.name()}});
+  Json options = {{"by", by}, {"leaving", leaving.name()}};
+  if (label) options["label"] = *label;
+  write_octree(session, target, output, input, options);
   return kDone;
 }
 

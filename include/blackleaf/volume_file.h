@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "blackleaf/label_voxels.h"
 #include "blackleaf/octree.h"
 #include "blackleaf/work.h"
 
@@ -32,6 +33,18 @@ struct VolumeOptions {
 /// slices.
 Octree read_volume(const std::filesystem::path& path, const VolumeOptions& options = {}, const Work& work = {});
 
+struct LabelVolumeOptions {
+  std::optional<Bands> bands = {};  // without them the values themselves are the labels
+  int depth = 0;                    // as in VolumeOptions
+  bool centre = false;
+};
+
+/// The labels of a volume file, as label_map_from_voxels() makes them; frame and errors as of read_volume(). Read slice
+/// by slice: memory is that of the label map and of some slices. Error(bad_input) also for a value that is no label,
+/// with its voxel, and when every value is NaN.
+LabelMap read_label_volume(const std::filesystem::path& path, const LabelVolumeOptions& options = {},
+                           const Work& work = {});
+
 /// True iff the suffix is one that volumes have: .nrrd .nhdr .nii .nii.gz .mha .mhd .hdr .img(.gz) ...
 bool is_volume_name(const std::filesystem::path& path);
 
@@ -39,5 +52,8 @@ bool is_volume_name(const std::filesystem::path& path);
 /// white voxel for an empty solid), with the frame's geometry: .nrrd, .nii, .nii.gz, .mha by suffix. Atomic.
 /// Throws Error(io), and Error(bad_argument) for other suffixes and for volumes beyond 2^33 voxels.
 void write_volume(const Octree& octree, const std::filesystem::path& path, bool crop = false);
+/// The same for labels: the values are the labels, in the smallest of uint8, uint16 and uint32 that holds them all; the
+/// bounding box is that of all labels but 0.
+void write_volume(const LabelMap& labels, const std::filesystem::path& path, bool crop = false);
 
 }  // namespace blackleaf

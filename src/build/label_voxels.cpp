@@ -23,13 +23,11 @@ template <class T>
 class LabelEngine {
  public:
   LabelEngine(const std::array<std::int64_t, 3>& size, const VolumePlacement& placement, Frame frame, Work work)
-      : depth_(checked_depth(size, placement)), size_(size), frame_(std::move(frame)), work_(std::move(work)) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low_[axis] = placement.corner[axis];
-      high_[axis] = low_[axis] + size[axis];
-    }
-    next_ = low_[2];
-  }
+      : size_(size),
+        box_(placed_box(size, placement)),
+        frame_(std::move(frame)),
+        work_(std::move(work)),
+        next_(box_.low[2]) {}
   virtual ~LabelEngine() = default;
   LabelEngine(const LabelEngine&) = delete;
   LabelEngine& operator=(const LabelEngine&) = delete;
@@ -37,8 +35,8 @@ class LabelEngine {
   void add(const T* slices, std::int64_t count) {
     const std::int64_t slice = size_[0] * size_[1];
     while (count > 0) {
-      const std::int64_t z = next_ + held_, layer_end = std::min((z | 3) + 1, high_[2]);
-      assert(z < high_[2]);
+      const std::int64_t z = next_ + held_, layer_end = std::min((z | 3) + 1, box_.high[2]);
+      assert(z < box_.high[2]);
       std::int64_t taken = 0;
       if (held_ > 0 || z + count < layer_end) {
         taken = std::min(count, layer_end - z);
@@ -50,7 +48,7 @@ class LabelEngine {
           layers(held_slices_.data(), layer_end);
         }
       } else {
-        const std::int64_t slab_end = std::min((z | 63) + 1, high_[2]);
+        const std::int64_t slab_end = std::min((z | 63) + 1, box_.high[2]);
         const std::int64_t end = z + count >= slab_end ? slab_end : (z + count) & ~std::int64_t{3};
         taken = end - z;
         layers(slices, end);
@@ -61,7 +59,7 @@ class LabelEngine {
   }
 
   LabelMap finish() {
-    assert(next_ == high_[2]);
+    assert(next_ == box_.high[2]);
     return join(std::move(frame_));
   }
 
@@ -72,17 +70,19 @@ class LabelEngine {
   virtual LabelMap join(Frame frame) = 0;
 
   // The volume in the universe, [low, high).
-  const std::array<std::int64_t, 3>& low() const { return low_; }
-  const std::array<std::int64_t, 3>& high() const { return high_; }
+  const std::array<std::int64_t, 3>& low() const { return box_.low; }
+  const std::array<std::int64_t, 3>& high() const { return box_.high; }
   const std::array<std::int64_t, 3>& size() const { return size_; }
-  int depth() const { return depth_; }
+  int depth() const { return box_.depth; }
 
  private:
   void layers(const T* slices, std::int64_t end) {
-    const auto fraction = [&](double z) { return (z - static_cast<double>(low_[2])) / static_cast<double>(size_[2]); };
+    const auto fraction = [&](double z) {
+      return (z - static_cast<double>(box_.low[2])) / static_cast<double>(size_[2]);
+    };
     // Walking through a slab takes about as long as reading sixteen of its slices.
     constexpr double kWalk = 16;
-    const bool closes = (end & 63) == 0 || end == high_[2];
+    const bool closes = (end & 63) == 0 || end == box_.high[2];
     const double begin = fraction(static_cast<double>(next_)), done = fraction(static_cast<double>(end));
     const double read = closes ? std::max(begin, fraction(static_cast<double>(end) - kWalk)) : done;
     scan(slices, next_, end, part_of(work_, begin, read));
@@ -90,12 +90,11 @@ class LabelEngine {
     if (closes) close_slab(part_of(work_, read, done));
   }
 
-  const int depth_;
   const std::array<std::int64_t, 3> size_;
-  std::array<std::int64_t, 3> low_{}, high_{};
+  const PlacedBox box_;
   Frame frame_;
   const Work work_;
-  std::int64_t next_ = 0;       // z of the first slice that is not in the blocks
+  std::int64_t next_;           // z of the first slice that is not in the blocks
   std::vector<T> held_slices_;  // those that do not yet fill a layer
   std::int64_t held_ = 0;
 };

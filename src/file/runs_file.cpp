@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,10 +18,11 @@ namespace {
 
 constexpr std::uint64_t kLargestUniverse = std::uint64_t{1} << (3 * kMaxDepth);
 
-// Collects counts as the monochrome form: neighbours of one colour merged, black first.
-class RunCollector {
+// Lines to runs: calls take(count, colour) for each, count 0 left out.
+template <class Take>
+class RunLines {
  public:
-  explicit RunCollector(const std::filesystem::path& path) : name_(path.string()) {}
+  RunLines(const std::filesystem::path& path, Take take) : name_(path.string()), take_(std::move(take)) {}
 
   void line(std::string_view text) {
     ++line_;
@@ -34,14 +36,7 @@ class RunCollector {
       fail("is not \"count colour\", two whole numbers");
     if (count > kLargestUniverse - total_) fail("brings the counts above the 8^20 voxels of the largest universe");
     total_ += count;
-    if (count == 0) return;
-    const bool black = colour != 0;
-    if (!counts_.empty() && black == (counts_.size() % 2 == 1)) {
-      counts_.back() += count;
-    } else {
-      if (counts_.empty() && !black) counts_.push_back(0);
-      counts_.push_back(count);
-    }
+    if (count > 0) take_(count, colour);
   }
 
   [[noreturn]] void fail_next(const std::string& what) {
@@ -49,7 +44,8 @@ class RunCollector {
     fail(what);
   }
 
-  Octree octree() const {
+  // The depth of the universe that the runs fill.
+  int depth() const {
     if (line_ == 0)
       throw Error(ErrorCode::bad_input, fmt::format("{}: is empty", name_),
                   "write one \"count colour\" line for every run");
@@ -60,7 +56,7 @@ class RunCollector {
                   fmt::format("{}: line {}, the last: the counts add up to {}, which is not 8^n for any n from 1 to 20",
                               name_, line_, total_),
                   "lines are missing or doubled");
-    return octree_from_monochrome(counts_, depth);
+    return depth;
   }
 
  private:
@@ -86,48 +82,87 @@ class RunCollector {
   const std::string name_;
   std::uint64_t line_ = 0;
   std::uint64_t total_ = 0;
-  std::vector<std::uint64_t> counts_;
+  Take take_;
 };
 
-}  // namespace
-
-void write_runs(const Octree& octree, const std::filesystem::path& path) {
-  detail::AtomicFile file(path);
-  fmt::memory_buffer text;
-  const auto flush = [&] {
-    file.write(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-    text.clear();
-  };
-  for_each_run(octree, [&](std::uint64_t count, bool black) {
-    fmt::format_to(fmt::appender(text), "{} {}\n", count, black ? 1 : 0);
-    if (text.size() > (std::size_t{1} << 16)) flush();
-  });
-  flush();
-  file.commit();
-}
-
-Octree read_runs(const std::filesystem::path& path) {
+// Calls take(count, colour) for every run of a file and returns the depth.
+template <class Take>
+int read_lines(const std::filesystem::path& path, Take take) {
   constexpr std::size_t kLongestLine = 1024;  // far more than two numbers need
   detail::InputFile file(path);
-  RunCollector collector(path);
+  RunLines<Take> lines(path, std::move(take));
   std::array<std::uint8_t, 1 << 16> buffer;
   std::string carried;  // the beginning of a line whose end is not yet read
   while (const std::size_t got = file.read_some(buffer)) {
     std::string_view text(reinterpret_cast<const char*>(buffer.data()), got);
     for (std::size_t end; (end = text.find('\n')) != std::string_view::npos; text.remove_prefix(end + 1)) {
       if (carried.empty()) {
-        collector.line(text.substr(0, end));
+        lines.line(text.substr(0, end));
       } else {
         carried += text.substr(0, end);
-        collector.line(carried);
+        lines.line(carried);
         carried.clear();
       }
     }
     carried += text;
-    if (carried.size() > kLongestLine) collector.fail_next("has no end; this is not a text file of runs");
+    if (carried.size() > kLongestLine) lines.fail_next("has no end; this is not a text file of runs");
   }
-  if (!carried.empty()) collector.line(carried);
-  return collector.octree();
+  if (!carried.empty()) lines.line(carried);
+  return lines.depth();
+}
+
+// Writes the runs that for_each(visit) tells of as visit(count, colour).
+template <class ForEach>
+void write_lines(const std::filesystem::path& path, const ForEach& for_each) {
+  detail::AtomicFile file(path);
+  fmt::memory_buffer text;
+  const auto flush = [&] {
+    file.write(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+    text.clear();
+  };
+  for_each([&](std::uint64_t count, std::uint32_t colour) {
+    fmt::format_to(fmt::appender(text), "{} {}\n", count, colour);
+    if (text.size() > (std::size_t{1} << 16)) flush();
+  });
+  flush();
+  file.commit();
+}
+
+}  // namespace
+
+void write_runs(const Octree& octree, const std::filesystem::path& path) {
+  write_lines(path, [&](const auto& visit) {
+    for_each_run(octree, [&](std::uint64_t count, bool black) { visit(count, black ? 1 : 0); });
+  });
+}
+
+void write_runs(const LabelMap& labels, const std::filesystem::path& path) {
+  write_lines(path, [&](const auto& visit) {
+    for (std::size_t run = 0; run < labels.run_count(); ++run) visit(labels.count(run), labels.labels()[run]);
+  });
+}
+
+Octree read_runs(const std::filesystem::path& path) {
+  // As the monochrome form: neighbours of one colour merged, black first.
+  std::vector<std::uint64_t> counts;
+  const int depth = read_lines(path, [&](std::uint64_t count, std::uint32_t colour) {
+    const bool black = colour != 0;
+    if (!counts.empty() && black == (counts.size() % 2 == 1)) {
+      counts.back() += count;
+    } else {
+      if (counts.empty() && !black) counts.push_back(0);
+      counts.push_back(count);
+    }
+  });
+  return octree_from_monochrome(counts, depth);
+}
+
+LabelMap read_label_runs(const std::filesystem::path& path) {
+  std::vector<Run> runs;
+  const int depth = read_lines(path, [&](std::uint64_t count, std::uint32_t colour) {
+    runs.push_back({count, colour});
+  });
+  return LabelMap(runs, depth);
 }
 
 }  // namespace blackleaf

@@ -287,14 +287,17 @@ void ImageReader::read(void* values) {
 }
 
 void write_image(const fs::path& path, ImageFormat format, const std::array<std::int64_t, 3>& size,
-                 const ImageGeometry& geometry, const std::uint8_t* values) {
+                 const ImageGeometry& geometry, Component component, const void* values) {
+  using Type = itk::IOComponentEnum;
   const Quiet quiet;
   try {
     const itk::ImageIOBase::Pointer io = make(format);
     io->SetFileName(path.string());
     io->SetNumberOfDimensions(3);
     io->SetPixelType(itk::IOPixelEnum::SCALAR);
-    io->SetComponentType(itk::IOComponentEnum::UCHAR);
+    io->SetComponentType(component == Component::u8    ? Type::UCHAR
+                         : component == Component::u16 ? Type::USHORT
+                                                       : Type::UINT);
     io->SetNumberOfComponents(1);
     itk::ImageIORegion region(3);
     for (unsigned i = 0; i < 3; ++i) {

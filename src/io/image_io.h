@@ -57,8 +57,9 @@ class ImageReader {
   ImageInformation information_;
 };
 
-/// Writes a three-dimensional uint8 volume. `path` must have one of the format's suffixes. Throws Error(io).
+/// Writes a three-dimensional volume of uint8, uint16 or uint32. `path` must have one of the format's suffixes. Throws
+/// Error(io).
 void write_image(const std::filesystem::path& path, ImageFormat format, const std::array<std::int64_t, 3>& size,
-                 const ImageGeometry& geometry, const std::uint8_t* values);
+                 const ImageGeometry& geometry, Component component, const void* values);
 
 }  // namespace blackleaf::detail

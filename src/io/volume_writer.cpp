@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <new>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
+#include "blackleaf/label_map.h"
 #include "blackleaf/leaves.h"
 #include "blackleaf/measures.h"
 #include "blackleaf/volume_file.h"
@@ -22,19 +22,23 @@ using detail::ImageFormat;
 
 constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 33;
 
-// Sets the black voxels of a box, leaf by leaf, row by row.
-void fill(const Octree& octree, const Box& box, const std::array<std::int64_t, 3>& size, std::uint8_t* values) {
-  for_each_black_leaf(octree, [&](const Leaf& leaf) {
-    const Cube& c = leaf.cube;
+// The values of a box of voxels, x fastest.
+template <class T>
+struct Values {
+  const Box& box;
+  std::array<std::int64_t, 3> size;
+  T* values;
+
+  // Sets a cube. Requires: it lies in the box.
+  void fill(const Cube& c, T value) const {
     const std::int32_t side = c.side();
-    // The box holds every black voxel, so leaves need no cutting.
     for (std::int32_t z = c.z; z < c.z + side; ++z)
       for (std::int32_t y = c.y; y < c.y + side; ++y) {
         const std::int64_t row = (std::int64_t{z} - box.min[2]) * size[1] + (y - box.min[1]);
-        std::memset(values + row * size[0] + (c.x - box.min[0]), 1, static_cast<std::size_t>(side));
+        std::fill_n(values + row * size[0] + (c.x - box.min[0]), side, value);
       }
-  });
-}
+  }
+};
 
 detail::ImageGeometry geometry_of(const Frame& frame) {
   detail::ImageGeometry geometry;
@@ -71,17 +75,19 @@ void check_geometry(const std::filesystem::path& path, ImageFormat format, const
     fail(fmt::format("a side of more than {} voxels", std::numeric_limits<std::int16_t>::max()));
 }
 
-}  // namespace
+constexpr Box kOneVoxel{{0, 0, 0}, {1, 1, 1}};
 
-void write_volume(const Octree& octree, const std::filesystem::path& path, bool crop) {
+constexpr Box universe(std::int32_t side) { return {{0, 0, 0}, {side, side, side}}; }
+
+// The volume whose values `fill` sets; all others are 0. Requires: `fill` sets nothing outside the box.
+template <class T, class Fill>
+void write(const std::filesystem::path& path, detail::Component component, const Frame& universe_frame, const Box& box,
+           bool crop, const Fill& fill) {
   const std::string suffix = detail::image_suffix(path);
   if (suffix != ".nrrd" && suffix != ".nii" && suffix != ".nii.gz" && suffix != ".mha")
     throw Error(ErrorCode::bad_argument, fmt::format("{}: volumes are not written as '{}'", path.string(), suffix),
                 "use .nrrd, .nii, .nii.gz or .mha");
   const ImageFormat format = *detail::image_format(path);
-  const std::int32_t side = octree.side();
-  Box box{{0, 0, 0}, {side, side, side}};
-  if (crop) box = bounding_box(octree).value_or(Box{{0, 0, 0}, {1, 1, 1}});
   std::array<std::int64_t, 3> size{};
   for (std::size_t i = 0; i < 3; ++i) size[i] = std::int64_t{box.max[i]} - box.min[i];
   const auto voxels = static_cast<std::uint64_t>(size[0] * size[1] * size[2]);
@@ -90,22 +96,51 @@ void write_volume(const Octree& octree, const std::filesystem::path& path, bool 
         ErrorCode::bad_argument,
         fmt::format("{}: a volume of {} x {} x {} voxels is more than 2^33", path.string(), size[0], size[1], size[2]),
         crop ? "build the octree at a smaller depth" : "crop it to its bounding box or build it at a smaller depth");
-  const Frame frame = octree.frame().shifted({box.min[0] + 0.5, box.min[1] + 0.5, box.min[2] + 0.5});
+  const Frame frame = universe_frame.shifted({box.min[0] + 0.5, box.min[1] + 0.5, box.min[2] + 0.5});
   check_geometry(path, format, frame, size);
 
   detail::AtomicFile file(path, suffix);
-  const std::unique_ptr<std::uint8_t[]> values(new (std::nothrow) std::uint8_t[voxels]());
+  const std::unique_ptr<T[]> values(new (std::nothrow) T[voxels]());
   if (!values)
-    throw Error(ErrorCode::io,
-                fmt::format("{}: a volume needs {} bytes of memory, more than there are", path.string(), voxels),
-                "crop it to its bounding box or build it at a smaller depth");
-  fill(octree, box, size, values.get());
+    throw Error(
+        ErrorCode::io,
+        fmt::format("{}: a volume needs {} bytes of memory, more than there are", path.string(), voxels * sizeof(T)),
+        "crop it to its bounding box or build it at a smaller depth");
+  fill(Values<T>{box, size, values.get()});
   try {
-    detail::write_image(file.temporary(), format, size, geometry_of(frame), values.get());
+    detail::write_image(file.temporary(), format, size, geometry_of(frame), component, values.get());
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("{}: {}", path.string(), error.what()));
   }
   file.commit();
+}
+
+template <class T>
+void write_labels(const LabelMap& labels, const std::filesystem::path& path, detail::Component component,
+                  const Box& box, bool crop) {
+  write<T>(path, component, labels.frame(), box, crop, [&](const Values<T>& values) {
+    for_each_label_cube(labels, [&](const Cube& cube, std::uint32_t label) {
+      if (label != 0) values.fill(cube, static_cast<T>(label));
+    });
+  });
+}
+
+}  // namespace
+
+void write_volume(const Octree& octree, const std::filesystem::path& path, bool crop) {
+  const Box box = crop ? bounding_box(octree).value_or(kOneVoxel) : universe(octree.side());
+  write<std::uint8_t>(path, detail::Component::u8, octree.frame(), box, crop, [&](const Values<std::uint8_t>& values) {
+    for_each_black_leaf(octree, [&](const Leaf& leaf) { values.fill(leaf.cube, 1); });
+  });
+}
+
+void write_volume(const LabelMap& labels, const std::filesystem::path& path, bool crop) {
+  const auto all = labels.labels();
+  const std::uint32_t largest = *std::max_element(all.begin(), all.end());
+  const Box box = crop ? bounding_box(octree_from_labels(labels)).value_or(kOneVoxel) : universe(labels.side());
+  if (largest <= 0xFF) return write_labels<std::uint8_t>(labels, path, detail::Component::u8, box, crop);
+  if (largest <= 0xFFFF) return write_labels<std::uint16_t>(labels, path, detail::Component::u16, box, crop);
+  write_labels<std::uint32_t>(labels, path, detail::Component::u32, box, crop);
 }
 
 }  // namespace blackleaf

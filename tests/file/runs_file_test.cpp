@@ -7,6 +7,7 @@
 #include "blackleaf/implicit.h"
 #include "blackleaf/runs.h"
 #include "reference/dense_grid.h"
+#include "reference/dense_labels.h"
 #include "temporary_folder.h"
 
 namespace blackleaf {
@@ -68,6 +69,38 @@ TEST(RunsFile, ErrorsNameTheLine) {
   expect_refused("4 1\n" + std::string(200000, '7'), {"line 2 has no end"});
   expect_error(ErrorCode::io, {"none.runs: no such file"}, [&] { read_runs(folder / "none.runs"); });
   expect_error(ErrorCode::io, {"is a folder"}, [&] { read_runs(folder.path()); });
+}
+
+TEST(RunsFile, LabelsRoundTrip) {
+  const test::TemporaryFolder folder;
+  std::mt19937 random(98);
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    reference::DenseLabels grid(1 + i % 5);
+    const std::int64_t side = grid.side();
+    grid.labels = reference::random_labels({side, side, side}, {0, 1, 300, 4294967295u}, random);
+    const LabelMap map(grid.runs(), grid.depth);
+    write_runs(map, folder / "a.runs");
+    EXPECT_TRUE(read_label_runs(folder / "a.runs") == map);
+    EXPECT_TRUE(read_runs(folder / "a.runs") == octree_from_labels(map));
+  }
+  write_runs(LabelMap(20), folder / "a.runs");
+  EXPECT_TRUE(read_label_runs(folder / "a.runs") == LabelMap(20));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.runs"});
+}
+
+TEST(RunsFile, LabelTextIsTheStreamAndIsMerged) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "a.runs", " 1\t7 \n2 7\r\n0 9\n\n4 300\n1 0");
+  const LabelMap map = read_label_runs(folder / "a.runs");
+  EXPECT_EQ(map.runs(), (Runs{{3, 7}, {4, 300}, {1, 0}}));
+  write_runs(map, folder / "b.runs");
+  EXPECT_EQ(test::read_text(folder / "b.runs"), "3 7\n4 300\n1 0\n");
+  test::write_file(folder / "a.runs", "1 0\n3 -1\n4 1\n");
+  expect_error(ErrorCode::bad_input, {"a.runs: line 2 is not \"count colour\""},
+               [&] { read_label_runs(folder / "a.runs"); });
+  test::write_file(folder / "a.runs", "9 4\n");
+  expect_error(ErrorCode::bad_input, {"line 1", "not 8^n"}, [&] { read_label_runs(folder / "a.runs"); });
 }
 
 // Lines that lie across the borders of the reader's buffer.

@@ -1,0 +1,77 @@
+// blackleaf build: label maps, from volumes and run streams.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "blackleaf/runs_file.h"
+#include "blackleaf/volume_file.h"
+#include "build.h"
+#include "files.h"
+#include "options.h"
+
+namespace blackleaf::cli {
+namespace {
+
+LabelMap from_volume(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
+  LabelVolumeOptions options;
+  if (o.bands) {
+    options.bands = Bands{parse_numbers("--bands", *o.bands)};
+    facts["bands"] = options.bands->thresholds;
+  } else {
+    facts["labels"] = true;
+  }
+  options.depth = like ? like->depth() : o.depth.value_or(0);
+  options.centre = o.centre;
+  if (o.centre) facts["centre"] = true;
+  const LabelMap labels =
+      session.stage("build", [&](const Work& work) { return read_label_volume(o.input, options, work); });
+  facts["depth"] = labels.depth();
+  if (!like) return labels;
+  facts["like"] = base_name(*o.like);
+  if (!labels.frame().same_as(like->frame()))
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("the voxels of '{}' are not those of '{}', from the universe's corner on", o.input, *o.like),
+        "leave --like out: labels are neither shifted nor resampled");
+  return labels.with_frame(like->frame());
+}
+
+}  // namespace
+
+void declare_label_options(CLI::App& app, BuildOptions& o) {
+  const std::string group = "Options for volumes and run streams of many labels";
+  CLI::Option* labels =
+      app.add_flag("--labels", o.labels, "keep the label of every voxel: values that are whole numbers");
+  CLI::Option* bands = add_text(app, "--bands", o.bands, "LIST",
+                                "volumes: keep labels 0, 1, 2, ...: how many of the thresholds a,b,... are not above "
+                                "the value");
+  labels->group(group);
+  bands->group(group)->excludes(labels);
+  for (const char* other : {"--range", "--label"}) {
+    labels->excludes(app.get_option(other));
+    bands->excludes(app.get_option(other));
+  }
+}
+
+LabelMap build_labels(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
+  const char* const option = o.labels ? "--labels" : "--bands";
+  const bool runs = suffix_of(o.input) == ".runs";
+  std::error_code error;
+  const bool volume = is_volume_name(o.input) || std::filesystem::is_directory(o.input, error);
+  if (!runs && !volume)
+    throw Error(ErrorCode::bad_argument, fmt::format("{} does not apply to '{}', which is no volume", option, o.input),
+                "leave it out");
+  refuse_options(
+      o.input, runs ? "a run stream" : "a volume",
+      {{o.fit.has_value(), "--fit"}, {o.voxel_size.has_value(), "--voxel-size"}, {o.rule.has_value(), "--rule"}});
+  if (!runs) return from_volume(session, o, like, facts);
+  refuse_options(o.input, "a run stream",
+                 {{o.bands.has_value(), "--bands"}, {o.depth.has_value(), "--depth"}, {o.centre, "--centre"}});
+  const LabelMap labels = session.stage("build", [&](const Work&) { return read_label_runs(o.input); });
+  facts["labels"] = true;
+  facts["depth"] = labels.depth();
+  return like ? labels.with_frame(frame_for_runs(o, *like, labels.depth(), facts)) : labels;
+}
+
+}  // namespace blackleaf::cli
