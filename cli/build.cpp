@@ -14,8 +14,8 @@ namespace {
 
 void declare(CLI::App& app, BuildOptions& o) {
   app.add_option("INPUT", o.input,
-                 "mesh (STL, OBJ, PLY, OFF, glTF, 3MF, ...), volume (NRRD, NIfTI, MetaImage, ...) "
-                 "or run stream (.runs)")
+                 "mesh (STL, OBJ, PLY, OFF, glTF, 3MF, ...), volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG, or a "
+                 "folder of slices) or run stream (.runs)")
       ->required()
       ->type_name("");
   add_output(app, o.output, "octree file to write, or - for standard output");
@@ -38,6 +38,8 @@ Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Oc
                   {o.voxel_size.has_value(), "--voxel-size"},
                   {o.rule.has_value(), "--rule"},
                   {o.range.has_value(), "--range"},
+                  {o.series.has_value(), "--series"},
+                  {o.spacing.has_value(), "--spacing"},
                   {o.centre, "--centre"}});
   Octree octree = session.stage("build", [&](const Work&) {
     if (!o.label) return read_runs(o.input);
@@ -81,7 +83,7 @@ int run_build(Session& session) {
 
   check_octree_output(session, o.output);
   if (o.input == "-") throw Error(ErrorCode::bad_argument, "standard input cannot be built from", "name a file");
-  check_plain_input(o.input, "a mesh, volume or run stream");
+  check_input_or_folder(o.input, "a mesh, volume or run stream");
   std::optional<Octree> like;
   if (o.like) like = read_octree(session, *o.like).octree;
 
@@ -96,7 +98,7 @@ int run_build(Session& session) {
   Octree octree;
   if (suffix_of(o.input) == ".runs")
     octree = from_runs(session, o, like, facts);
-  else if (is_volume_name(o.input))
+  else if (is_volume(o.input))
     octree = build_volume(session, o, like, facts);
   else
     octree = build_mesh(session, o, like, facts);

@@ -2,6 +2,7 @@
 // ...
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -20,7 +21,8 @@ struct BuildOptions {
   std::string input, output;
   std::optional<int> depth;
   std::optional<double> fit, voxel_size, label;
-  std::optional<std::string> rule, range, like;
+  std::optional<std::string> rule, range, like, series;
+  std::optional<std::array<double, 3>> spacing;
   bool centre = false;
   bool labels = false;
   std::optional<std::string> bands;

@@ -26,9 +26,9 @@ TriangleMesh read_as_mesh(const std::string& input) {
     const bool known = std::find(kMeshes.begin(), kMeshes.end(), suffix_of(input)) != kMeshes.end();
     const std::string what = error.what();
     if (known || error.code() != ErrorCode::bad_input) throw;
-    throw Error(
-        error.code(), what.substr(0, what.find("; use ")),
-        "use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF), a volume (NRRD, NIfTI, MetaImage) or a run stream (.runs)");
+    throw Error(error.code(), what.substr(0, what.find("; use ")),
+                "use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF), a volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG) or a "
+                "run stream (.runs)");
   }
 }
 
@@ -49,7 +49,11 @@ void declare_mesh_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
 
 Octree build_mesh(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
   refuse_options(o.input, "a mesh",
-                 {{o.range.has_value(), "--range"}, {o.label.has_value(), "--label"}, {o.centre, "--centre"}});
+                 {{o.range.has_value(), "--range"},
+                  {o.label.has_value(), "--label"},
+                  {o.series.has_value(), "--series"},
+                  {o.spacing.has_value(), "--spacing"},
+                  {o.centre, "--centre"}});
   const std::string rule = o.rule.value_or("centre");
   if (rule != "centre" && rule != "touched")
     throw Error(ErrorCode::bad_argument, fmt::format("--rule is '{}', which is unknown", rule),

@@ -43,6 +43,17 @@ void declare_volume_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
                            ->type_name("L");
   range->group(volumes)->excludes(label);
   label->group(volumes);
+  add_text(app, "--series", o.series, "UID", "of a folder with several DICOM series: the UID of one, or how it ends")
+      ->group(volumes);
+  app.add_option_function<std::string>(
+         "--spacing",
+         [&o](const std::string& text) {
+           const Eigen::Vector3d sides = parse_vector("--spacing", text);
+           o.spacing = {sides[0], sides[1], sides[2]};
+         },
+         "sides of a voxel in mm, for pictures, which do not tell them (default: voxels of side 1)")
+      ->type_name("X,Y,Z")
+      ->group(volumes);
   app.add_flag("--centre", o.centre, "centre the volume in the universe instead of placing it at the corner")
       ->group(volumes)
       ->excludes(like);
@@ -61,6 +72,13 @@ Octree build_volume(Session& session, const BuildOptions& o, const std::optional
   }
   options.label = o.label;
   if (o.label) facts["label"] = *o.label;
+  if (o.series) {
+    options.series = *o.series;
+    facts["series"] = *o.series;
+  }
+  options.spacing = o.spacing;
+  if (o.spacing) facts["spacing"] = *o.spacing;
+  options.warn = [&](const std::string& what) { session.warn(what); };
   options.depth = like ? like->depth() : o.depth.value_or(0);
   options.centre = o.centre;
   if (o.centre) facts["centre"] = true;

@@ -82,6 +82,13 @@ void check_plain_input(const std::string& path, const std::string& what) {
     throw Error(ErrorCode::io, fmt::format("'{}' is a device or a pipe, not {}", path, what), "name an ordinary file");
 }
 
+void check_input_or_folder(const std::string& path, const std::string& what) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return check_plain_input(path, what);
+  if (access(path.c_str(), R_OK | X_OK) != 0)
+    throw Error(ErrorCode::io, fmt::format("folder '{}' may not be read", path), "change its permissions");
+}
+
 void check_output(const std::string& path) {
   if (path.empty()) throw Error(ErrorCode::bad_argument, "the output's name is empty", "give one after -o");
   std::error_code error;

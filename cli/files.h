@@ -26,6 +26,8 @@ void check_input(const std::string& path, const std::string& what);
 /// The same for formats that must be read from a file: throws Error(io) for pipes and devices too, which have no
 /// beginning to go back to and may keep us waiting for ever.
 void check_plain_input(const std::string& path, const std::string& what);
+/// The same where a folder is as good as a file.
+void check_input_or_folder(const std::string& path, const std::string& what);
 /// Throws Error(io) when `path` plainly cannot be written: its folder is missing or closed to us, or it is a
 /// folder.
 void check_output(const std::string& path);

@@ -27,6 +27,7 @@ std::size_t bytes_of(Component component);
 struct ImageGeometry {
   std::array<double, 3> origin{};
   std::array<std::array<double, 3>, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  std::string unit = "mm";
 };
 
 /// What a volume's header says.

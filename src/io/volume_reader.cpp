@@ -11,6 +11,7 @@
 #include "blackleaf/volume_file.h"
 #include "blackleaf/voxel_stream.h"
 #include "io/image_io.h"
+#include "io/slice_stack.h"
 #include "io/value_range.h"
 #include "io/volume_shape.h"
 #include "io/volume_source.h"
@@ -45,7 +46,7 @@ class VolumeJob {
 
   Octree run() {
     check_options(options_);
-    const auto source = detail::open_volume(path_);
+    const auto source = detail::open_volume(path_, {options_.series, options_.spacing, options_.warn});
     const ImageInformation& information = source->information();
     size_ = detail::solid_size(information);
     placed_ = detail::place_volume(path_, information, options_.depth, options_.centre);
@@ -157,7 +158,11 @@ class VolumeJob {
 
 }  // namespace
 
-bool is_volume_name(const std::filesystem::path& path) { return detail::image_format(path).has_value(); }
+bool is_volume_name(const std::filesystem::path& path) {
+  return detail::image_format(path).has_value() || detail::has_slice_suffix(path);
+}
+
+bool is_volume(const std::filesystem::path& path) { return is_volume_name(path) || detail::is_stack(path); }
 
 Octree read_volume(const std::filesystem::path& path, const VolumeOptions& options, const Work& work) {
   return VolumeJob(path, options, work).run();

@@ -20,7 +20,7 @@ void check_shape(const std::filesystem::path& path, const ImageInformation& info
 
 struct PlacedVolume {
   VolumePlacement placement;
-  Frame frame;  // of the universe; unit mm
+  Frame frame;  // of the universe
 };
 
 /// The volume at the corner of the universe, or in its centre; `depth` 0 is the smallest that holds it. Throws

@@ -14,6 +14,7 @@
 #include "file/input_file.h"
 #include "io/header_text.h"
 #include "io/inflating_file.h"
+#include "io/slice_stack.h"
 #include "io/volume_header.h"
 #include "io/volume_shape.h"
 
@@ -236,14 +237,24 @@ class WholeSource : public VolumeSource {
 
 }  // namespace
 
-std::unique_ptr<VolumeSource> open_volume(const fs::path& path) {
+std::unique_ptr<VolumeSource> open_volume(const fs::path& path, const SourceOptions& options) {
+  if (is_stack(path)) return open_stack(path, options);
+  if (!options.series.empty() || options.spacing)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{}: a {} is given, but it is neither DICOM nor a stack of pictures", path.string(),
+                            options.spacing ? "spacing" : "series"),
+                "leave it out");
   const auto format = image_format(path);
   if (const InputFile file(path); !file.is_regular())
     throw Error(ErrorCode::io, path.string() + ": is not an ordinary file", "copy it to one first");
-  else if (!format)
-    refuse(path, "has no suffix of a volume", "use .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .hdr or .img");
   else if (file.size() == 0)
     refuse(path, "is empty", kAgain);
+  if (has_slice_suffix(path))
+    refuse(path, "is neither DICOM nor TIFF nor PNG",
+           "its contents are not what its name says; check where it comes from");
+  if (!format)
+    refuse(path, "has no suffix of a volume",
+           "use .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .hdr or .img, a DICOM, TIFF or PNG file, or a folder of them");
   ValueLocation location = check_header(path, *format);
   auto reader = std::make_unique<ImageReader>(path, *format);
   const ImageInformation& information = reader->information();

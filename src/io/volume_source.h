@@ -1,9 +1,13 @@
 // VolumeSource: the values of a volume file, slice after slice, in memory for a few slices only.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "io/image_io.h"
 
@@ -23,7 +27,15 @@ class VolumeSource {
   virtual void read(std::int64_t slices, void* values) = 0;
 };
 
+/// What may be said of a volume besides where it is; VolumeOptions tells what each means.
+struct SourceOptions {
+  std::string series = {};
+  std::optional<std::array<double, 3>> spacing = {};
+  std::function<void(const std::string&)> warn = {};
+};
+
 /// The source for a volume file or folder of slices, by its name and contents; the header has been checked.
-std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path);
+/// Throws Error(bad_argument) for options that do not apply.
+std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const SourceOptions& options = {});
 
 }  // namespace blackleaf::detail
