@@ -169,6 +169,9 @@ void take_frames(const gdcm::File& file, DicomFile& result) {
   if (const DataSet* detector = item(set, Tag(0x0054, 0x0022), 0, keep)) common.take(*detector);
   common.take(set);
   const bool enhanced = set.FindDataElement(Tag(0x5200, 0x9230)) || set.FindDataElement(Tag(0x5200, 0x9229));
+  for (const auto& [tag, what] : {std::pair(Tag(0x0028, 0x1053), "slope"), std::pair(Tag(0x0028, 0x1052), "intercept")})
+    if (!text(set, tag).empty() && !numbers<1>(set, tag))
+      refuse(result.path, fmt::format("its rescale {} is no finite number", what), kAgain);
   if (!enhanced) {
     const std::vector<double> meaning = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
     common.intercept = meaning.at(0);
@@ -206,6 +209,7 @@ void take_frames(const gdcm::File& file, DicomFile& result) {
 
 DicomFile header_of(const fs::path& path) {
   DicomFile result;
+  result.path = path;
   gdcm::Reader reader;
   reader.SetFileName(path.c_str());
   if (!reader.ReadUpToTag(Tag(0x7fe0, 0x0010))) refuse(path, "cannot be read as DICOM", kAgain);

@@ -69,11 +69,14 @@ class StackJob {
                        others.size() == 1 ? "" : "s", some_of(others)));
   }
 
-  // Voxels of side 1, or of the sides that were asked for or found.
+  // Voxels of side 1, or of the sides that were asked for or found; the corner of the first is the origin.
   static void set_geometry(ImageGeometry& geometry, const std::optional<std::array<double, 3>>& spacing) {
     geometry = {};
     geometry.unit = spacing ? "mm" : "voxel";
-    for (std::size_t i = 0; spacing && i < 3; ++i) geometry.axes[i][i] = (*spacing)[i];
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (spacing) geometry.axes[i][i] = (*spacing)[i];
+      geometry.origin[i] = geometry.axes[i][i] / 2;
+    }
   }
 
   std::unique_ptr<VolumeSource> dicom() {

@@ -21,7 +21,7 @@ Frame frame_of(const ImageGeometry& geometry) {
     frame.origin[static_cast<int>(i)] = geometry.origin[i];
     frame.axes.col(static_cast<int>(i)) << geometry.axes[i][0], geometry.axes[i][1], geometry.axes[i][2];
   }
-  frame.unit = "mm";
+  frame.unit = geometry.unit;
   return frame;
 }
 
