@@ -1,10 +1,8 @@
 #include "io/dicom_files.h"
 
 #include <gdcmAttribute.h>
-#include <gdcmBoxRegion.h>
 #include <gdcmImageHelper.h>
 #include <gdcmImageReader.h>
-#include <gdcmImageRegionReader.h>
 #include <gdcmMediaStorage.h>
 #include <gdcmReader.h>
 #include <gdcmSequenceOfItems.h>
@@ -81,6 +79,7 @@ const DataSet* item(const DataSet& set, Tag sequence, std::size_t index,
   return &keep->GetItem(index + 1).GetNestedDataSet();
 }
 
+const Tag kPixelData(0x7fe0, 0x0010);
 const Tag kPosition(0x0020, 0x0032), kOrientation(0x0020, 0x0037), kPixelSpacing(0x0028, 0x0030);
 const Tag kThickness(0x0018, 0x0050), kSliceSpacing(0x0018, 0x0088);
 
@@ -154,10 +153,7 @@ DicomPixels pixels_of(const gdcm::File& file) {
   pixels.high_bit = format.GetHighBit();
   pixels.is_signed = format.GetPixelRepresentation() != 0;
   pixels.palette = text(set, Tag(0x0028, 0x0004)).starts_with("PALETTE");
-  const gdcm::TransferSyntax& syntax = file.GetHeader().GetDataSetTransferSyntax();
-  pixels.encapsulated = syntax.IsEncapsulated();
-  pixels.seekable =
-      syntax == gdcm::TransferSyntax::ImplicitVRLittleEndian || syntax == gdcm::TransferSyntax::ExplicitVRLittleEndian;
+  pixels.encapsulated = file.GetHeader().GetDataSetTransferSyntax().IsEncapsulated();
   return pixels;
 }
 
@@ -212,7 +208,8 @@ DicomFile header_of(const fs::path& path) {
   result.path = path;
   gdcm::Reader reader;
   reader.SetFileName(path.c_str());
-  if (!reader.ReadUpToTag(Tag(0x7fe0, 0x0010))) refuse(path, "cannot be read as DICOM", kAgain);
+  // Up to the values, which are skipped.
+  if (!reader.ReadUpToTag(kPixelData, {kPixelData})) refuse(path, "cannot be read as DICOM", kAgain);
   const gdcm::File& file = reader.GetFile();
   const DataSet& set = file.GetDataSet();
   result.series = printable(text(set, Tag(0x0020, 0x000e)));
@@ -225,11 +222,12 @@ DicomFile header_of(const fs::path& path) {
   const DicomPixels& pixels = result.pixels;
   if (pixels.columns == 0 || pixels.rows == 0) refuse(path, "has no voxels", kAgain);
   // Before anything is counted by what the header says: each frame takes a byte at the least, and raw ones all theirs.
-  const std::uint64_t bytes = InputFile(path).size();
+  const InputFile input(path);
+  const std::uint64_t bytes = input.size();
   const auto values = static_cast<double>(pixels.columns) * static_cast<double>(pixels.rows) *
                       static_cast<double>(pixels.frames) * pixels.samples;
-  const bool deflated =
-      file.GetHeader().GetDataSetTransferSyntax() == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
+  const gdcm::TransferSyntax& syntax = file.GetHeader().GetDataSetTransferSyntax();
+  const bool deflated = syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
   // deflate packs 1032 bytes into one at the very best, blank JPEG 2000 images more than anything else.
   const double most = pixels.encapsulated ? 1e5 : deflated ? 1040 : 1;
   if (values * std::max(1, pixels.bits_allocated / 8) > most * static_cast<double>(bytes) ||
@@ -238,6 +236,24 @@ DicomFile header_of(const fs::path& path) {
            fmt::format("its header tells of {} x {} x {} voxels, more than its {} bytes can hold", pixels.columns,
                        pixels.rows, pixels.frames, bytes),
            "the file was cut off or its header is damaged; get it again from its source");
+  if (syntax == gdcm::TransferSyntax::ImplicitVRLittleEndian ||
+      syntax == gdcm::TransferSyntax::ExplicitVRLittleEndian) {
+    // The reader stands at the values, behind the four bytes of their length; at the end if there are none.
+    const std::uint64_t offset = reader.GetStreamCurrentPosition();
+    std::uint32_t length = 0;
+    if (offset < bytes && offset >= 4) {
+      std::array<std::uint8_t, 4> four{};
+      input.read_at(offset - 4, four);
+      length = four[0] | std::uint32_t{four[1]} << 8 | std::uint32_t{four[2]} << 16 | std::uint32_t{four[3]} << 24;
+    }
+    const std::uint64_t there = offset < bytes ? std::min<std::uint64_t>(length, bytes - offset) : 0;
+    if (static_cast<double>(there) < values * (pixels.bits_allocated / 8))
+      refuse(path,
+             fmt::format("its header tells of {} x {} x {} voxels, but it has values of {} bytes", pixels.columns,
+                         pixels.rows, pixels.frames, there),
+             "the file was cut off or its header is damaged; get it again from its source");
+    result.pixels.offset = offset;
+  }
   take_frames(file, result);
   return result;
 }
@@ -364,10 +380,9 @@ std::vector<DicomFile> read_dicom_headers(const std::vector<fs::path>& files) {
 }
 
 struct DicomDecoder::Gdcm {
-  fs::path path;                             // of the file that is held
-  std::unique_ptr<gdcm::ImageReader> whole;  // read to its end
-  std::vector<char> values;                  // all of `whole`, or one frame
-  std::unique_ptr<gdcm::ImageRegionReader> frames;
+  fs::path path;                    // of the file that is held
+  std::unique_ptr<InputFile> file;  // where values are as they are meant,
+  std::vector<char> values;         // one frame of it; or all values, unpacked
 };
 
 DicomDecoder::DicomDecoder() : gdcm_(std::make_unique<Gdcm>()) {}
@@ -378,43 +393,33 @@ void DicomDecoder::decode(const DicomFile& file, std::size_t frame, Component co
   const auto count = static_cast<std::size_t>(pixels.columns * pixels.rows);
   const std::size_t frame_bytes = count * static_cast<std::size_t>(pixels.bits_allocated / 8);
   const auto damaged = [&](const char* what) { refuse(file.path, what, kAgain); };
-  const char* bytes = nullptr;
-  if (pixels.frames > 1 && pixels.seekable) {
-    if (gdcm_->path != file.path) {
-      *gdcm_ = {};
-      gdcm_->frames = std::make_unique<gdcm::ImageRegionReader>();
-      gdcm_->frames->SetFileName(file.path.c_str());
-      if (!gdcm_->frames->ReadInformation()) damaged("its image cannot be read");
-      gdcm_->path = file.path;
-      gdcm_->values.resize(frame_bytes);
-    }
-    gdcm::BoxRegion region;
-    const auto z = static_cast<unsigned>(frame);
-    region.SetDomain(0, static_cast<unsigned>(pixels.columns - 1), 0, static_cast<unsigned>(pixels.rows - 1), z, z);
-    gdcm_->frames->SetRegion(region);
-    if (gdcm_->frames->ComputeBufferLength() != frame_bytes ||
-        !gdcm_->frames->ReadIntoBuffer(gdcm_->values.data(), frame_bytes))
-      damaged("its values are damaged or fewer than its header tells");
-    bytes = gdcm_->values.data();
-  } else {
-    if (gdcm_->path != file.path) {
-      *gdcm_ = {};
-      gdcm_->whole = std::make_unique<gdcm::ImageReader>();
-      gdcm_->whole->SetFileName(file.path.c_str());
-      if (!gdcm_->whole->Read()) damaged("its image cannot be read");
-      const gdcm::Image& image = gdcm_->whole->GetImage();
-      const gdcm::PixelFormat& format = image.GetPixelFormat();
-      // The values themselves may tell otherwise than the header around them.
-      if (format.GetSamplesPerPixel() != pixels.samples || format.GetBitsAllocated() != pixels.bits_allocated ||
-          image.GetBufferLength() != frame_bytes * file.frames.size())
-        damaged("its values are damaged or of another size than its header tells");
-      gdcm_->values.resize(image.GetBufferLength());
-      if (!image.GetBuffer(gdcm_->values.data())) damaged("its values are damaged");
-      gdcm_->path = file.path;
-    }
-    bytes = gdcm_->values.data() + frame * frame_bytes;
+  std::vector<char>& held = gdcm_->values;
+  if (pixels.offset > 0) {
+    if (gdcm_->path != file.path) gdcm_->file = std::make_unique<InputFile>(file.path);
+    held.resize(frame_bytes);
+    gdcm_->file->read_at(pixels.offset + frame * frame_bytes,
+                         {reinterpret_cast<std::uint8_t*>(held.data()), frame_bytes});
+  } else if (gdcm_->path != file.path) {
+    gdcm_->path.clear();
+    gdcm::ImageReader reader;
+    reader.SetFileName(file.path.c_str());
+    if (!reader.Read()) damaged("its image cannot be read");
+    const gdcm::Image& image = reader.GetImage();
+    const gdcm::PixelFormat& format = image.GetPixelFormat();
+    const std::size_t all_bytes = frame_bytes * file.frames.size();
+    // The values themselves may tell otherwise than the header around them.
+    if (format.GetSamplesPerPixel() != pixels.samples || format.GetBitsAllocated() != pixels.bits_allocated ||
+        image.GetBufferLength() != all_bytes)
+      damaged("its values are damaged or of another size than its header tells");
+    const gdcm::ByteValue* raw = image.GetDataElement().GetByteValue();
+    if (!pixels.encapsulated && (!raw || raw->GetLength() < all_bytes))
+      damaged("its values are fewer than its header tells");
+    held.resize(all_bytes);
+    if (!image.GetBuffer(held.data())) damaged("its values are damaged");
   }
-  convert(bytes, count, pixels, file.frames[frame], component, values);
+  gdcm_->path = file.path;
+  convert(held.data() + (pixels.offset > 0 ? 0 : frame * frame_bytes), count, pixels, file.frames[frame], component,
+          values);
 }
 
 }  // namespace blackleaf::detail

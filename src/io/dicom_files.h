@@ -31,7 +31,7 @@ struct DicomPixels {
   bool is_signed = false;
   bool palette = false;
   bool encapsulated = false;  // compressed
-  bool seekable = false;      // frames can be read one by one
+  std::uint64_t offset = 0;   // of the first value in the file, in this machine's byte order; 0: packed in some way
 };
 
 struct DicomFile {

@@ -98,7 +98,7 @@ class StackJob {
     for (const DicomSlice& slice : series->slices) {
       const DicomFile& file = (*files)[slice.file];
       plan.largest_file = std::max(plan.largest_file, file.bytes);
-      if (file.pixels.frames > 1 && !file.pixels.seekable)
+      if (file.pixels.frames > 1 && file.pixels.offset == 0)
         plan.kept_bytes = std::max(plan.kept_bytes, static_cast<std::uint64_t>(pixels.columns) *
                                                         static_cast<std::uint64_t>(pixels.rows) * file.frames.size() *
                                                         static_cast<std::uint64_t>(file.pixels.bits_allocated / 8));

@@ -50,7 +50,7 @@ TEST_F(BadInput, FoldersAsInput) {
   std::filesystem::create_directory(folder() / "folder");
   for (const auto& command : readers("folder")) refused(command, "'folder' is a folder");
   refused({"verify", "folder"}, "'folder' is a folder");
-  refused({"build", "folder", "-o", "o.octree"}, "'folder' is a folder");
+  refused({"build", "folder", "-o", "o.octree"}, "folder: is an empty folder");
   refused({"move", "b.octree", "--matrix", "folder", "-o", "o.octree"}, "'folder' is a folder");
 }
 

@@ -291,6 +291,7 @@ TEST(PictureStack, WhatIsNoStack) {
   const auto refuse = [&](const std::vector<std::pair<std::string, std::string>>& files,
                           const std::vector<std::string>& pieces, const VolumeOptions& options = {},
                           ErrorCode code = ErrorCode::bad_input) {
+    SCOPED_TRACE(pieces[0]);
     const test::TemporaryFolder folder;
     for (const auto& [name, content] : files) {
       if (content == "folder")
@@ -364,7 +365,7 @@ TEST(PictureStack, MutatedFiles) {
   tiled.deflate = true;
   const std::vector<std::string> files = {test::png_bytes(20, 20, 8, page.values), test::tiff_bytes({page, tiled})};
   int refused = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 200; ++i) {
     SCOPED_TRACE(i);
     const bool png = i % 3 == 0;
     std::string bytes = files[png ? 0 : 1];
@@ -382,7 +383,7 @@ TEST(PictureStack, MutatedFiles) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     }
   }
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, 50);
 }
 
 }  // namespace

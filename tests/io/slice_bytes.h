@@ -190,6 +190,7 @@ inline std::string tiff_bytes(const std::vector<TiffPage>& pages, bool big_endia
     if (page.pixels_a_unit > 0)
       for (const std::uint16_t tag : {std::uint16_t{282}, std::uint16_t{283}})
         entry(tag, 5, 1, u32(static_cast<std::uint32_t>(page.pixels_a_unit * 1000)) + u32(1000));
+    if (page.meaning == 3) entry(320, 3, 768, std::string(1536, '\1'));
     if (page.tile > 0) {
       entry(322, 4, 1, u32(page.tile));
       entry(323, 4, 1, u32(page.tile));

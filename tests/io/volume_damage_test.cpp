@@ -35,7 +35,7 @@ TEST_F(VolumeDamage, NotAVolume) {
     expect_error(ErrorCode::io, {"no such file"}, [&] { read_volume(folder_ / (std::string("none") + name)); });
   }
   std::filesystem::create_directory(folder_ / "dir.nrrd");
-  expect_error(ErrorCode::io, {"dir.nrrd", "is a folder"}, [&] { read_volume(folder_ / "dir.nrrd"); });
+  expect_error(ErrorCode::bad_input, {"dir.nrrd", "is an empty folder"}, [&] { read_volume(folder_ / "dir.nrrd"); });
   refuse("a.stl", "solid", {"no suffix of a volume"});
 }
 
