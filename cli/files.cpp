@@ -22,6 +22,15 @@ namespace {
 // docs/FILE_FORMAT.md: the first four bytes say "octree", the next four show damage by transfers that take it for text.
 constexpr std::ptrdiff_t kMagicBytes = 4;
 
+// Opening a pipe by its name waits until somebody writes to it, for ever if nobody does. The names that shells give to
+// open pipes are harmless.
+void refuse_named_pipe(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_fifo(path, error) || path.starts_with("/dev/") || path.starts_with("/proc/")) return;
+  throw Error(ErrorCode::io, fmt::format("'{}' is a named pipe, which may keep us waiting for ever", path),
+              fmt::format("give - for standard input and redirect it: < {}", path));
+}
+
 }  // namespace
 
 CLI::Option* add_octree_input(CLI::App& app, const std::string& name, std::string& target,
@@ -34,7 +43,9 @@ CLI::Option* add_output(CLI::App& app, std::string& target, const std::string& d
 }
 
 std::string base_name(const std::string& path) {
-  return path == "-" ? "standard input" : fs::path(path).filename().string();
+  if (path == "-") return "standard input";
+  const fs::path name(path);
+  return name.has_filename() ? name.filename().string() : name.parent_path().filename().string();  // folder/
 }
 
 std::string suffix_of(const std::string& path) {
@@ -124,7 +135,10 @@ void check_octree_output(const Session& session, const std::string& path) {
 
 std::vector<std::uint8_t> read_bytes(const std::string& path) {
   const bool standard = path == "-";
-  if (!standard) check_input(path, "a file");
+  if (!standard) {
+    check_input(path, "a file");
+    refuse_named_pipe(path);
+  }
   const std::string name = standard ? "standard input" : "'" + path + "'";
   struct Descriptor {
     int number;
@@ -157,6 +171,7 @@ OctreeFile read_octree(Session& session, const std::string& path) {
   return session.stage("read", [&](const Work&) {
     if (path == "-") return from_bytes(read_bytes(path), "standard input");
     check_input(path, "an octree file");
+    refuse_named_pipe(path);
     return load(path);
   });
 }

@@ -30,7 +30,7 @@ class StackJob {
     if (options_.spacing)
       for (const double side : *options_.spacing)
         if (!(side > 0) || !std::isfinite(side))
-          throw Error(ErrorCode::bad_argument, fmt::format("a voxel's side of {} mm makes no sense", side),
+          throw Error(ErrorCode::bad_argument, fmt::format("a spacing of {} mm between voxels makes no sense", side),
                       "give lengths above zero");
     std::error_code error;
     folder_ = fs::is_directory(path_, error);
@@ -197,7 +197,8 @@ bool has_slice_suffix(const fs::path& path) { return promised_kind(path) != Slic
 bool is_stack(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) return true;
-  if (!fs::is_regular_file(path, error)) return false;
+  // The voxels of other volumes may begin with any bytes.
+  if (image_format(path) || !fs::is_regular_file(path, error)) return false;
   try {
     return slice_kind(path) != SliceKind::none;
   } catch (const Error&) {

@@ -10,7 +10,8 @@ namespace blackleaf::detail {
 
 /// True iff the suffix is one of DICOM, TIFF or PNG files.
 bool has_slice_suffix(const std::filesystem::path& path);
-/// True iff the path is a folder or begins as a DICOM, PNG or TIFF file does; false for what cannot be read.
+/// True iff the path is a folder, or begins as a DICOM, PNG or TIFF file does and has no suffix of another volume;
+/// false for what cannot be read.
 bool is_stack(const std::filesystem::path& path);
 
 /// The slices of a folder or of one file, in order: docs/VOLUMES.md says which files count, how they are ordered and

@@ -112,6 +112,10 @@ void check_nrrd_header(const fs::path& path) {
     if (key == "space directions" || key == "space origin")
       if (value.find("nan") != std::string::npos || value.find("inf") != std::string::npos)
         refuse(path, fmt::format("its {} has numbers that are not finite", key), kMendHeader);
+    if (key == "spacings")
+      for (const std::string& word : words(value))
+        if (const auto x = number<double>(word); !x || !std::isfinite(*x) || *x <= 0)
+          refuse(path, fmt::format("its spacings have {}, which is no side of a voxel", shown(word)), kMendHeader);
     return !key.empty();
   };
   const std::string head = head_of(path, kLongestTextHeader);

@@ -15,6 +15,7 @@
 #include "io/header_text.h"
 #include "io/inflating_file.h"
 #include "io/slice_stack.h"
+#include "io/text_values.h"
 #include "io/volume_header.h"
 #include "io/volume_shape.h"
 
@@ -263,6 +264,7 @@ std::unique_ptr<VolumeSource> open_volume(const fs::path& path, const SourceOpti
   const auto size = solid_size(information);
   const auto voxels = static_cast<std::uint64_t>(size[0] * size[1] * size[2]);  // at most 2^60
   check_believable(path, location, voxels, voxels * bytes_of(stored));
+  if (location.packing == Packing::text && location.known) check_text_values(path, location, stored, voxels);
   // What is scaled becomes a float, or stays a double.
   const Component scaled = stored == Component::f64 ? Component::f64 : Component::f32;
   if (*information.component != stored && *information.component != scaled) location.direct = false;

@@ -156,6 +156,15 @@ TEST_F(BadInput, PipesAreNotBuiltFrom) {
   refused({"build", "-", "-o", "o.octree"}, "standard input cannot be built from; name a file");
 }
 
+TEST_F(BadInput, NamedPipesAreNotWaitedFor) {
+  write("b.runs", "8 1\n");
+  ASSERT_EQ(mkfifo((folder() / "pipe").c_str(), 0600), 0);
+  for (const auto& command : readers("pipe")) refused(command, "'pipe' is a named pipe");
+  refused({"verify", "pipe"}, "'pipe' is a named pipe");
+  // What shells make of <(command) and of a redirection has a writer.
+  EXPECT_EQ(done({"info", "/dev/stdin", "--json"}, read("b.octree")).json()["volume"], 27);
+}
+
 TEST_F(BadInput, OptionsGivenTwice) {
   make_stl("s.stl", {0, 0, 0}, {1, 1, 1});
   refused({"build", "s.stl", "--depth", "2", "--depth", "3", "-o", "o.octree"}, "--depth is given twice");

@@ -219,7 +219,7 @@ TEST_F(BuildCommand, BadMeshesAreRefused) {
   refused({"build", "empty.obj", "-o", "b.octree"}, "empty.obj");
   write("notes.txt", "hello\n");
   refused({"build", "notes.txt", "-o", "b.octree"}, "notes.txt");
-  refused({"build", "notes.txt", "-o", "b.octree"}, "a volume (NRRD, NIfTI, MetaImage) or a run stream (.runs)");
+  refused({"build", "notes.txt", "-o", "b.octree"}, "a volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG) or a run stream (.runs)");
 }
 
 TEST_F(BuildCommand, BadVolumesAreRefused) {

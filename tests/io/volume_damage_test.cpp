@@ -39,6 +39,34 @@ TEST_F(VolumeDamage, NotAVolume) {
   refuse("a.stl", "solid", {"no suffix of a volume"});
 }
 
+TEST_F(VolumeDamage, TextThatItsTypeCannotHold) {
+  const auto nrrd = [](const std::string& type, const std::string& values) {
+    return test::nrrd_header(type, "2 2 1", 3, "", "text") + "\n" + values;
+  };
+  refuse("a.nrrd", nrrd("uint8", "1 2 300 4\n"), {"value 3 is '300'"});
+  refuse("b.nrrd", nrrd("uint8", "1 -2 3 4\n"), {"value 2 is '-2'"});
+  refuse("c.nrrd", nrrd("int16", "1 2 3 32768"), {"value 4 is '32768'"});
+  refuse("d.nrrd", nrrd("int8", "1.5 2 3 4"), {"value 1 is '1.5'"});
+  refuse("e.nrrd", nrrd("uint8", "12345 6 7 "), {"12345"});
+  refuse("f.nrrd", nrrd("uint8", "1 2      \n\n\n3\n"), {"4 voxels", "3 numbers"});
+  refuse("g.nrrd", nrrd("float", "1 2 x 4"), {"value 3 is 'x'"});
+  refuse("h.nrrd", nrrd("uint8", "1 2 3 " + std::string(100000, '4')), {"value 4"});
+  test::write_file(folder_ / "good.nrrd", nrrd("uint8", "255 0\n 7,1 and whatever"));
+  EXPECT_EQ(read_volume(folder_ / "good.nrrd").depth(), 1);
+  test::write_file(folder_ / "real.nrrd", nrrd("float", "1e-3 -2.5 nan 1e30\n"));
+  EXPECT_EQ(read_volume(folder_ / "real.nrrd").depth(), 1);
+  refuse("a.mha",
+         "ObjectType = Image\nNDims = 3\nDimSize = 2 2 1\nBinaryData = False\nElementType = MET_UCHAR\n"
+         "ElementDataFile = LOCAL\n1 2 256 4\n",
+         {"value 3 is '256'"});
+}
+
+TEST_F(VolumeDamage, SpacingsThatAreNone) {
+  for (const char* spacings : {"nan 1 1", "1 -1 1", "1 1 0", "1 inf 1", "1 x 1"})
+    refuse("a.nrrd", test::nrrd_header("uint8", "2 2 1", 3, std::string("spacings: ") + spacings + "\n") + "\n1234",
+           {"spacings"});
+}
+
 TEST_F(VolumeDamage, HeadersThatClaimTooMuch) {
   refuse("a.nrrd", test::nrrd_header("float", "10000 10000 10000", 3) + "\n1234",
          {"1000000000000 voxels", "there are 4"});
