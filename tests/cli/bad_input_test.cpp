@@ -161,8 +161,6 @@ TEST_F(BadInput, NamedPipesAreNotWaitedFor) {
   ASSERT_EQ(mkfifo((folder() / "pipe").c_str(), 0600), 0);
   for (const auto& command : readers("pipe")) refused(command, "'pipe' is a named pipe");
   refused({"verify", "pipe"}, "'pipe' is a named pipe");
-  // What shells make of <(command) and of a redirection has a writer.
-  EXPECT_EQ(done({"info", "/dev/stdin", "--json"}, read("b.octree")).json()["volume"], 27);
 }
 
 TEST_F(BadInput, OptionsGivenTwice) {
