@@ -1,5 +1,5 @@
 # install() and the exported package: find_package(blackleaf) gives blackleaf::blackleaf (everything but foreign file
-# formats); find_package(blackleaf COMPONENTS io) adds blackleaf::io, which needs ITK, assimp and Cairo.
+# formats); find_package(blackleaf COMPONENTS io) adds blackleaf::io, which needs ITK, assimp, Cairo, libpng and toml++.
 include(CMakePackageConfigHelpers)
 
 add_library(blackleaf INTERFACE)
