@@ -1,8 +1,9 @@
-// blackleaf build: octrees of real objects, from meshes, volumes and run streams.
+// blackleaf build: octrees of real objects, from meshes, volumes, point clouds, silhouettes and run streams.
 #include "build.h"
 
 #include <fmt/format.h>
 
+#include "blackleaf/points_file.h"
 #include "blackleaf/runs_file.h"
 #include "blackleaf/volume_file.h"
 #include "commands.h"
@@ -15,18 +16,20 @@ namespace {
 void declare(CLI::App& app, BuildOptions& o) {
   app.add_option("INPUT", o.input,
                  "mesh (STL, OBJ, PLY, OFF, glTF, 3MF, ...), volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG, or a "
-                 "folder of slices) or run stream (.runs)")
+                 "folder of slices), point cloud (PLY, PCD, XYZ, ...), silhouettes (.json or .toml naming PNG images) "
+                 "or run stream (.runs)")
       ->required()
       ->type_name("");
   add_output(app, o.output, "octree file to write, or - for standard output");
-  CLI::Option* depth = add_integer(
-      app, "--depth", o.depth, 1, kMaxDepth,
-      "1 to 20: the universe has 2^N voxels a side (default: 8 for meshes, else the smallest that holds all)");
+  CLI::Option* depth = add_integer(app, "--depth", o.depth, 1, kMaxDepth,
+                                   "1 to 20: the universe has 2^N voxels a side (default: 8 for meshes and points, "
+                                   "else the smallest that holds all)");
   CLI::Option* like =
       add_text(app, "--like", o.like, "FILE.octree", "use the universe of another octree: its depth and frame");
   like->excludes(depth);
 
   declare_mesh_options(app, o, like);
+  declare_points_options(app, o);
   declare_volume_options(app, o, like);
   declare_label_options(app, o);
 }
@@ -50,6 +53,15 @@ Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Oc
   facts["depth"] = octree.depth();
   if (o.label) facts["label"] = *o.label;
   return like ? octree.with_frame(frame_for_runs(o, *like, octree.depth(), facts)) : octree;
+}
+
+bool is_silhouettes_name(const std::string& input) {
+  return suffix_of(input) == ".json" || suffix_of(input) == ".toml";
+}
+
+// What is nothing else is read as a mesh.
+bool is_mesh_like(const std::string& input) {
+  return suffix_of(input) != ".runs" && !is_silhouettes_name(input) && !is_volume_name(input);
 }
 
 }  // namespace
@@ -83,7 +95,7 @@ int run_build(Session& session) {
 
   check_octree_output(session, o.output);
   if (o.input == "-") throw Error(ErrorCode::bad_argument, "standard input cannot be built from", "name a file");
-  check_input_or_folder(o.input, "a mesh, volume or run stream");
+  check_input_or_folder(o.input, "a mesh, volume, point cloud, list of silhouettes or run stream");
   std::optional<Octree> like;
   if (o.like) like = read_octree(session, *o.like).octree;
 
@@ -91,13 +103,21 @@ int run_build(Session& session) {
   if (suffix_of(o.input) == ".octree")
     throw Error(ErrorCode::bad_argument, fmt::format("'{}' is an octree already", o.input),
                 "use move, combine or export");
+  const bool points = is_point_cloud(o.input) || (o.points && is_mesh_like(o.input));
+  if (!points)
+    refuse_options(o.input, "no point cloud",
+                   {{o.min_points.has_value(), "--min-points"}, {o.clip, "--clip"}, {o.points, "--points"}});
   if (o.labels || o.bands) {
     write_labels(session, build_labels(session, o, like, facts), o.output, o.input, facts);
     return kDone;
   }
   Octree octree;
-  if (suffix_of(o.input) == ".runs")
+  if (points)
+    octree = build_points(session, o, like, facts);
+  else if (suffix_of(o.input) == ".runs")
     octree = from_runs(session, o, like, facts);
+  else if (is_silhouettes_name(o.input))
+    octree = build_silhouettes(session, o, like, facts);
   else if (is_volume(o.input))
     octree = build_volume(session, o, like, facts);
   else

@@ -19,11 +19,11 @@ namespace blackleaf::cli {
 
 struct BuildOptions {
   std::string input, output;
-  std::optional<int> depth;
+  std::optional<int> depth, min_points;
   std::optional<double> fit, voxel_size, label;
   std::optional<std::string> rule, range, like, series;
   std::optional<std::array<double, 3>> spacing;
-  bool centre = false;
+  bool centre = false, clip = false, points = false;
   bool labels = false;
   std::optional<std::string> bands;
 };
@@ -34,6 +34,9 @@ void declare_mesh_options(CLI::App& app, BuildOptions& options, CLI::Option* lik
 Octree build_mesh(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 void declare_volume_options(CLI::App& app, BuildOptions& options, CLI::Option* like);
 Octree build_volume(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
+void declare_points_options(CLI::App& app, BuildOptions& options);
+Octree build_points(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
+Octree build_silhouettes(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 
 /// Label maps, from volumes and run streams: --labels and --bands.
 void declare_label_options(CLI::App& app, BuildOptions& options);

@@ -26,22 +26,23 @@ TriangleMesh read_as_mesh(const std::string& input) {
     const bool known = std::find(kMeshes.begin(), kMeshes.end(), suffix_of(input)) != kMeshes.end();
     const std::string what = error.what();
     if (known || error.code() != ErrorCode::bad_input) throw;
-    throw Error(error.code(), what.substr(0, what.find("; use ")),
-                "use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF), a volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG) or a "
-                "run stream (.runs)");
+    throw Error(
+        error.code(), what.substr(0, what.find("; use ")),
+        "use a mesh (STL, OBJ, PLY, OFF, glTF, 3MF), a point cloud (PLY, PCD, XYZ), silhouettes (.json, .toml), "
+        "a volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG) or a run stream (.runs)");
   }
 }
 
 }  // namespace
 
 void declare_mesh_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
-  const std::string meshes = "Options for meshes";
+  const std::string meshes = "Options for meshes", both = "Options for meshes and point clouds";
   CLI::Option* fit =
       add_number(app, "--fit", o.fit, true,
                  "longest side as a fraction of the universe, above 0, at most 1 (default 0.75); centred");
-  CLI::Option* size = add_number(app, "--voxel-size", o.voxel_size, true, "side of a voxel in the mesh's units");
-  fit->group(meshes)->excludes(size)->excludes(like);
-  size->group(meshes)->excludes(like);
+  CLI::Option* size = add_number(app, "--voxel-size", o.voxel_size, true, "side of a voxel in the input's units");
+  fit->group(both)->excludes(size)->excludes(like);
+  size->group(both)->excludes(like);
   add_text(app, "--rule", o.rule, "RULE",
            "centre: a voxel is black iff its centre is inside (default); touched: iff it meets the solid at all")
       ->group(meshes);

@@ -1,6 +1,6 @@
 # install() and the exported package: find_package(blackleaf) gives blackleaf::blackleaf (everything but foreign file
-# formats); find_package(blackleaf COMPONENTS io) adds blackleaf::io, which needs ITK, GDCM, libtiff, libpng, assimp
-# and Cairo.
+# formats); find_package(blackleaf COMPONENTS io) adds blackleaf::io, which needs ITK, GDCM, libtiff, libpng, toml++,
+# assimp and Cairo.
 include(CMakePackageConfigHelpers)
 
 add_library(blackleaf INTERFACE)

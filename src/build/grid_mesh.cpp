@@ -1,47 +1,20 @@
 #include "grid_mesh.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "blackleaf/error.h"
+#include "to_universe.h"
 
 namespace blackleaf::detail {
 namespace {
-
-// How far outside the universe a vertex may lie and still be put on its wall: what rounding can do to a mesh that was
-// placed to fill its universe.
-constexpr double kWallTolerance = 0x1p-16;  // voxels
 
 std::string text(const Eigen::Vector3d& p) {
   std::array<char, 96> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "(%.6g, %.6g, %.6g)", p.x(), p.y(), p.z());
   return buffer.data();
 }
-
-// The map from world to universe coordinates. Axes along the world's are divided by, not multiplied with a rounded
-// inverse.
-class ToUniverse {
- public:
-  explicit ToUniverse(const Frame& frame) : origin_(frame.origin), scale_(frame.axes.diagonal()) {
-    const double size = frame.axes.colwise().norm().prod();
-    if (!frame.axes.allFinite() || !frame.origin.allFinite() || !(std::abs(frame.axes.determinant()) > 1e-9 * size))
-      throw Error(ErrorCode::bad_argument, "the frame's axes do not span space", "give three independent axes");
-    diagonal_ = frame.axes.isDiagonal(0);
-    if (!diagonal_) inverse_ = frame.axes.inverse();
-  }
-  Eigen::Vector3d operator()(const Eigen::Vector3d& world) const {
-    const Eigen::Vector3d p = world - origin_;
-    if (diagonal_) return p.cwiseQuotient(scale_);
-    return inverse_ * p;
-  }
-
- private:
-  Eigen::Vector3d origin_, scale_;
-  Eigen::Matrix3d inverse_;
-  bool diagonal_;
-};
 
 }  // namespace
 

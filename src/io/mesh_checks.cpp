@@ -1,11 +1,8 @@
 #include "io/mesh_checks.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
-#include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,99 +11,11 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
+#include "io/file_text.h"
+#include "io/ply_header.h"
 
 namespace blackleaf::detail {
 namespace {
-
-constexpr const char* kCutOff = "the file was cut off, get it again";
-constexpr const char* kDamaged = "it is damaged, get it again";
-
-[[noreturn]] void refuse(const std::string& name, const std::string& what, const char* remedy) {
-  throw Error(ErrorCode::bad_input, name + ": " + what, remedy);
-}
-
-// The bytes of a file from a position on, in order.
-class Bytes {
- public:
-  Bytes(const InputFile& file, std::uint64_t from) : file_(file), next_(from) {}
-
-  std::uint64_t position() const { return next_ - (held_ - at_); }
-  std::uint64_t left() const { return file_.size() - position(); }
-  // -1 at the end.
-  int get() {
-    if (at_ == held_ && !fill()) return -1;
-    return buffer_[at_++];
-  }
-  int peek() {
-    if (at_ == held_ && !fill()) return -1;
-    return buffer_[at_];
-  }
-  // False, and nothing skipped, when there are fewer.
-  bool skip(std::uint64_t count) {
-    if (count > left()) return false;
-    if (count <= held_ - at_) {
-      at_ += static_cast<std::size_t>(count);
-    } else {
-      next_ = position() + count;
-      at_ = held_ = 0;
-    }
-    return true;
-  }
-  // The next line that has more than blanks and comments ('#' to its end); false at the end of the file. What goes
-  // beyond 64 KiB in one line is dropped.
-  bool line(std::string& text) {
-    do {
-      text.clear();
-      bool comment = false;
-      int c = get();
-      if (c < 0) return false;
-      for (; c >= 0 && c != '\n' && c != '\r'; c = get()) {
-        comment = comment || c == '#';
-        if (!comment && text.size() < 65536) text += static_cast<char>(c);
-      }
-    } while (text.find_first_not_of(" \t\v\f") == std::string::npos);
-    return true;
-  }
-
- private:
-  bool fill() {
-    const std::uint64_t rest = file_.size() - next_;
-    held_ = static_cast<std::size_t>(std::min<std::uint64_t>(rest, buffer_.size()));
-    at_ = 0;
-    if (held_ == 0) return false;
-    file_.read_at(next_, std::span(buffer_).first(held_));
-    next_ += held_;
-    return true;
-  }
-
-  const InputFile& file_;
-  std::uint64_t next_;  // where in the file the buffer ends
-  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(std::size_t{1} << 16);
-  std::size_t at_ = 0, held_ = 0;
-};
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-std::vector<std::string_view> words(std::string_view text) {
-  std::vector<std::string_view> result;
-  for (std::size_t at = 0; (at = text.find_first_not_of(" \t\v\f", at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(text.find_first_of(" \t\v\f", at), text.size());
-    result.push_back(text.substr(at, end - at));
-    at = end;
-  }
-  return result;
-}
-
-// A whole number that fills the word.
-std::optional<std::uint64_t> whole_number(std::string_view word) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
-  return value;
-}
 
 // ---- STL
 
@@ -206,73 +115,6 @@ void check_off(const InputFile& file, const std::string& name) {
 
 // ---- PLY
 
-unsigned type_size(std::string_view type) {
-  static const std::map<std::string_view, unsigned> sizes = {
-      {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},  {"short", 2}, {"ushort", 2},
-      {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},   {"int32", 4}, {"uint32", 4},
-      {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
-  const auto found = sizes.find(type);
-  return found == sizes.end() ? 0 : found->second;
-}
-
-struct PlyProperty {
-  unsigned count_size;  // bytes of a list's length; 0 for a single number
-  unsigned size;        // bytes of a number
-};
-
-struct PlyElement {
-  std::string name;
-  std::uint64_t count;
-  std::vector<PlyProperty> properties;
-};
-
-struct PlyHeader {
-  std::string format;
-  std::vector<PlyElement> elements;
-  std::uint64_t end = 0;  // where the data begin
-  bool known = true;      // all types are
-};
-
-PlyHeader ply_header(std::string_view head, const std::string& name, bool whole) {
-  PlyHeader header;
-  // Old systems end lines by '\r' alone, others by '\n' or both; the first line tells, as binary data may follow.
-  const std::size_t first = head.find_first_of("\r\n");
-  const bool lone =
-      first != std::string_view::npos && head[first] == '\r' && (first + 1 >= head.size() || head[first + 1] != '\n');
-  for (std::size_t at = 0;;) {
-    const std::size_t end = head.find(lone ? '\r' : '\n', at);
-    std::string_view line = head.substr(at, end == std::string_view::npos ? end : end - at);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    const auto parts = words(line);
-    const bool last = !parts.empty() && parts.front() == "end_header";
-    if (end == std::string_view::npos && !(last && whole))
-      refuse(name, whole ? "its header has no end_header" : "its header has no end_header in its first 64 KiB",
-             whole ? kCutOff : kDamaged);
-    at = std::min(end, head.size() - 1) + 1;
-    if (last) {
-      header.end = at;
-      return header;
-    }
-    if (parts.size() >= 2 && parts[0] == "format") header.format = parts[1];
-    if (!parts.empty() && parts[0] == "element") {
-      const auto count = parts.size() == 3 ? whole_number(parts[2]) : std::nullopt;
-      if (!count) refuse(name, fmt::format("its header has no good count in \"{}\"", line.substr(0, 60)), kDamaged);
-      header.elements.push_back({std::string(parts[1]), *count, {}});
-    }
-    if (!parts.empty() && parts[0] == "property") {
-      PlyProperty property{};
-      if (parts.size() == 5 && parts[1] == "list") {
-        property = {type_size(parts[2]), type_size(parts[3])};
-        if (property.count_size == 0 || property.count_size > 4) header.known = false;
-      } else if (parts.size() == 3) {
-        property = {0, type_size(parts[1])};
-      }
-      if (property.size == 0 || header.elements.empty()) header.known = false;
-      if (!header.elements.empty()) header.elements.back().properties.push_back(property);
-    }
-  }
-}
-
 void check_ply_text(const InputFile& file, const std::string& name, const PlyHeader& header) {
   Bytes bytes(file, header.end);
   std::string line;
@@ -300,8 +142,8 @@ void check_ply_binary(const InputFile& file, const std::string& name, const PlyH
     std::uint64_t fixed = 0;
     bool lists = false;
     for (const PlyProperty& property : element.properties) {
-      fixed += property.count_size > 0 ? property.count_size : property.size;
-      lists = lists || property.count_size > 0;
+      fixed += property.is_list() ? property.count_size() : property.size();
+      lists = lists || property.is_list();
     }
     if (fixed == 0) continue;
     if (element.count > bytes.left() / fixed) fail(bytes.left() / fixed);
@@ -311,13 +153,13 @@ void check_ply_binary(const InputFile& file, const std::string& name, const PlyH
     }
     for (std::uint64_t i = 0; i < element.count; ++i)
       for (const PlyProperty& property : element.properties) {
-        std::uint64_t size = property.size;
-        if (property.count_size > 0) {
+        std::uint64_t size = property.size();
+        if (property.count_size() > 0) {
           std::uint64_t length = 0;
-          for (unsigned k = 0; k < property.count_size; ++k) {
+          for (unsigned k = 0; k < property.count_size(); ++k) {
             const int byte = bytes.get();
             if (byte < 0) fail(i);
-            length |= static_cast<std::uint64_t>(byte) << (8 * (big ? property.count_size - 1 - k : k));
+            length |= static_cast<std::uint64_t>(byte) << (8 * (big ? property.count_size() - 1 - k : k));
           }
           size *= length;
         }
@@ -327,14 +169,12 @@ void check_ply_binary(const InputFile& file, const std::string& name, const PlyH
 }
 
 void check_ply(const InputFile& file, const std::string& name) {
-  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 65536)), '\0');
-  file.read_at(0, {reinterpret_cast<std::uint8_t*>(head.data()), head.size()});
-  if (lower(head.substr(0, 3)) != "ply") return;
-  const PlyHeader header = ply_header(head, name, head.size() == file.size());
-  if (header.format == "ascii")
-    check_ply_text(file, name, header);
-  else if (header.known && header.format.starts_with("binary_"))
-    check_ply_binary(file, name, header);
+  const std::optional<PlyHeader> header = read_ply_header(file, name);
+  if (!header) return;
+  if (header->format == "ascii")
+    check_ply_text(file, name, *header);
+  else if (header->known && header->format.starts_with("binary_"))
+    check_ply_binary(file, name, *header);
 }
 
 }  // namespace

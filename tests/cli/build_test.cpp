@@ -217,9 +217,10 @@ TEST_F(BuildCommand, BadMeshesAreRefused) {
   refused({"build", "text.stl", "-o", "b.octree"}, "text.stl");
   write("empty.obj", "");
   refused({"build", "empty.obj", "-o", "b.octree"}, "empty.obj");
-  write("notes.txt", "hello\n");
-  refused({"build", "notes.txt", "-o", "b.octree"}, "notes.txt");
-  refused({"build", "notes.txt", "-o", "b.octree"}, "a volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG) or a run stream (.runs)");
+  write("notes.doc", "hello\n");
+  refused({"build", "notes.doc", "-o", "b.octree"}, "notes.doc");
+  refused({"build", "notes.doc", "-o", "b.octree"},
+          "a volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG) or a run stream (.runs)");
 }
 
 TEST_F(BuildCommand, BadVolumesAreRefused) {

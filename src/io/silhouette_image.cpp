@@ -1,0 +1,75 @@
+// Silhouettes from PNG images. The only file that sees libpng.
+#include <png.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "blackleaf/error.h"
+#include "blackleaf/silhouettes_file.h"
+#include "file/input_file.h"
+
+namespace blackleaf {
+namespace {
+
+// Deflate makes at most 1032 bytes of one, and a pixel has at least one bit.
+constexpr std::uint64_t kPixelsPerByte = 8 * 1032;
+
+// One line of libpng's reason.
+std::string reason(const char* message) {
+  std::string text;
+  for (const char* c = message; *c != 0; ++c) text += std::isprint(static_cast<unsigned char>(*c)) ? *c : ' ';
+  return text.empty() ? "no reason given" : text;
+}
+
+struct Freer {
+  void operator()(png_image* image) const { png_image_free(image); }
+};
+
+}  // namespace
+
+void read_silhouette_image(const std::filesystem::path& path, Silhouette& silhouette) {
+  const std::string name = path.string();
+  const auto refuse = [&](const std::string& what, const std::string& remedy) {
+    throw Error(ErrorCode::bad_input, name + ": " + what, remedy);
+  };
+  detail::InputFile file(path);
+  if (!file.is_regular()) throw Error(ErrorCode::io, name + ": is not an ordinary file", "copy it to one first");
+  constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 31;
+  if (file.size() > kLargestFile) refuse("has more than 2^31 bytes", "make it smaller");
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(file.size()));
+  file.read_at(0, bytes);
+
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  const std::unique_ptr<png_image, Freer> freer(&image);
+  const auto fail = [&] {
+    refuse(fmt::format("cannot be read as PNG: {}", reason(image.message)), "the file is damaged or no PNG image");
+  };
+  if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0) refuse("is not a PNG image", "convert it to PNG");
+  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) fail();
+  const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
+  if (pixels >= std::uint64_t{1} << 28)
+    refuse(fmt::format("has {} x {} pixels", image.width, image.height), "scale it down to less than 2^28 pixels");
+  if (pixels > bytes.size() * kPixelsPerByte)
+    refuse(fmt::format("tells of {} x {} pixels but has only {} bytes", image.width, image.height, bytes.size()),
+           "the file was cut off, get it again");
+
+  const bool has_alpha = (image.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+  image.format = PNG_FORMAT_GA;  // gray and alpha, 8 bits each, palettes, colours and 16 bits turned into those
+  std::vector<std::uint8_t> values(2 * static_cast<std::size_t>(pixels));
+  if (png_image_finish_read(&image, nullptr, values.data(), 0, nullptr) == 0) fail();
+
+  bool see_through = false;
+  for (std::size_t i = 1; has_alpha && i < values.size() && !see_through; i += 2) see_through = values[i] < 255;
+  silhouette.width = static_cast<std::int32_t>(image.width);
+  silhouette.height = static_cast<std::int32_t>(image.height);
+  silhouette.pixels.resize(static_cast<std::size_t>(pixels));
+  const std::size_t channel = see_through ? 1 : 0;
+  for (std::size_t i = 0; i < silhouette.pixels.size(); ++i) silhouette.pixels[i] = values[2 * i + channel] > 127;
+}
+
+}  // namespace blackleaf
