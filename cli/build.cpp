@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <initializer_list>
+
 #include "blackleaf/points_file.h"
 #include "blackleaf/runs_file.h"
 #include "blackleaf/volume_file.h"
@@ -35,15 +38,6 @@ void declare(CLI::App& app, BuildOptions& o) {
 }
 
 Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
-  refuse_options(o.input, "a run stream",
-                 {{o.depth.has_value(), "--depth"},
-                  {o.fit.has_value(), "--fit"},
-                  {o.voxel_size.has_value(), "--voxel-size"},
-                  {o.rule.has_value(), "--rule"},
-                  {o.range.has_value(), "--range"},
-                  {o.series.has_value(), "--series"},
-                  {o.spacing.has_value(), "--spacing"},
-                  {o.centre, "--centre"}});
   Octree octree = session.stage("build", [&](const Work&) {
     if (!o.label) return read_runs(o.input);
     // A label that is no whole number is that of no voxel.
@@ -55,13 +49,63 @@ Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Oc
   return like ? octree.with_frame(frame_for_runs(o, *like, octree.depth(), facts)) : octree;
 }
 
-bool is_silhouettes_name(const std::string& input) {
-  return suffix_of(input) == ".json" || suffix_of(input) == ".toml";
+enum class Kind { mesh, points, silhouettes, volume, runs };
+
+// What INPUT is: by its name, and for PLY files and folders by what is in them. What is nothing else is read as a mesh.
+Kind kind_of(const BuildOptions& o) {
+  const std::string suffix = suffix_of(o.input);
+  if (suffix == ".runs") return Kind::runs;
+  if (suffix == ".json" || suffix == ".toml") return Kind::silhouettes;
+  if (is_volume(o.input)) return Kind::volume;
+  return o.points || is_point_cloud(o.input) ? Kind::points : Kind::mesh;
 }
 
-// What is nothing else is read as a mesh.
-bool is_mesh_like(const std::string& input) {
-  return suffix_of(input) != ".runs" && !is_silhouettes_name(input) && !is_volume_name(input);
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::mesh:
+      return "a mesh";
+    case Kind::points:
+      return "a point cloud";
+    case Kind::silhouettes:
+      return "a list of silhouettes";
+    case Kind::volume:
+      return "a volume";
+    case Kind::runs:
+      return "a run stream";
+  }
+  return "";
+}
+
+// Throws if an option was given that means nothing for this kind of input.
+void refuse_options(const BuildOptions& o, Kind kind) {
+  struct Option {
+    const char* name;
+    bool given;
+    std::initializer_list<Kind> kinds;  // that it is for
+  };
+  using enum Kind;
+  const std::initializer_list<Option> options = {
+      {"--depth", o.depth.has_value(), {mesh, points, silhouettes, volume}},
+      {"--fit", o.fit.has_value(), {mesh, points}},
+      {"--voxel-size", o.voxel_size.has_value(), {mesh, points}},
+      {"--rule", o.rule.has_value(), {mesh}},
+      {"--inside", o.inside.has_value(), {mesh}},
+      {"--points", o.points, {points}},
+      {"--min-points", o.min_points.has_value(), {points}},
+      {"--clip", o.clip, {points}},
+      {"--range", o.range.has_value(), {volume}},
+      {"--label", o.label.has_value(), {volume, runs}},
+      {"--labels", o.labels, {volume, runs}},
+      {"--bands", o.bands.has_value(), {volume}},
+      {"--series", o.series.has_value(), {volume}},
+      {"--spacing", o.spacing.has_value(), {volume}},
+      {"--centre", o.centre, {volume}},
+  };
+  for (const Option& option : options)
+    if (option.given && std::find(option.kinds.begin(), option.kinds.end(), kind) == option.kinds.end())
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("{} does not apply to '{}', which is {}", option.name, o.input, name_of(kind)),
+                  "leave it out");
 }
 
 }  // namespace
@@ -73,14 +117,6 @@ Frame frame_for_runs(const BuildOptions& o, const Octree& like, int depth, Json&
                 fmt::format("'{}' has depth {} and '{}' has depth {}", o.input, depth, *o.like, like.depth()),
                 "a run stream fits only universes of its own depth");
   return like.frame();
-}
-
-void refuse_options(const std::string& input, const std::string& kind,
-                    std::initializer_list<std::pair<bool, const char*>> options) {
-  for (const auto& [given, name] : options)
-    if (given)
-      throw Error(ErrorCode::bad_argument, fmt::format("{} does not apply to '{}', which is {}", name, input, kind),
-                  "leave it out");
 }
 
 int run_build(Session& session) {
@@ -103,25 +139,28 @@ int run_build(Session& session) {
   if (suffix_of(o.input) == ".octree")
     throw Error(ErrorCode::bad_argument, fmt::format("'{}' is an octree already", o.input),
                 "use move, combine or export");
-  const bool points = is_point_cloud(o.input) || (o.points && is_mesh_like(o.input));
-  if (!points)
-    refuse_options(o.input, "no point cloud",
-                   {{o.min_points.has_value(), "--min-points"}, {o.clip, "--clip"}, {o.points, "--points"}});
+  const Kind kind = kind_of(o);
+  refuse_options(o, kind);
   if (o.labels || o.bands) {
     write_labels(session, build_labels(session, o, like, facts), o.output, o.input, facts);
     return kDone;
   }
-  Octree octree;
-  if (points)
-    octree = build_points(session, o, like, facts);
-  else if (suffix_of(o.input) == ".runs")
-    octree = from_runs(session, o, like, facts);
-  else if (is_silhouettes_name(o.input))
-    octree = build_silhouettes(session, o, like, facts);
-  else if (is_volume(o.input))
-    octree = build_volume(session, o, like, facts);
-  else
-    octree = build_mesh(session, o, like, facts);
+  const auto build = [&] {
+    switch (kind) {
+      case Kind::points:
+        return build_points(session, o, like, facts);
+      case Kind::silhouettes:
+        return build_silhouettes(session, o, like, facts);
+      case Kind::volume:
+        return build_volume(session, o, like, facts);
+      case Kind::runs:
+        return from_runs(session, o, like, facts);
+      case Kind::mesh:
+        break;
+    }
+    return build_mesh(session, o, like, facts);
+  };
+  const Octree octree = build();
   warn_if_empty(session, octree);
   write_octree(session, octree, o.output, o.input, facts);
   return kDone;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,7 +20,7 @@ struct BuildOptions {
   std::string input, output;
   std::optional<int> depth, min_points;
   std::optional<double> fit, voxel_size, label;
-  std::optional<std::string> rule, range, like, series;
+  std::optional<std::string> rule, inside, range, like, series;
   std::optional<std::array<double, 3>> spacing;
   bool centre = false, clip = false, points = false;
   bool labels = false;
@@ -43,10 +42,6 @@ void declare_label_options(CLI::App& app, BuildOptions& options);
 LabelMap build_labels(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 /// The universe of --like for a run stream of this depth: throws if its depth is another. Notes it in `facts`.
 Frame frame_for_runs(const BuildOptions& options, const Octree& like, int depth, Json& facts);
-
-/// Throws if an option was given that means nothing for this kind of input.
-void refuse_options(const std::string& input, const std::string& kind,
-                    std::initializer_list<std::pair<bool, const char*>> options);
 
 /// What the function returns; its errors begin with the file's name.
 template <class Function>

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "blackleaf/runs_file.h"
 #include "blackleaf/volume_file.h"
@@ -23,6 +22,9 @@ LabelMap from_volume(Session& session, const BuildOptions& o, const std::optiona
   }
   options.depth = like ? like->depth() : o.depth.value_or(0);
   options.centre = o.centre;
+  if (o.series) options.series = *o.series;
+  options.spacing = o.spacing;
+  options.warn = [&](const std::string& what) { session.warn(what); };
   if (o.centre) facts["centre"] = true;
   const LabelMap labels =
       session.stage("build", [&](const Work& work) { return read_label_volume(o.input, options, work); });
@@ -55,19 +57,7 @@ void declare_label_options(CLI::App& app, BuildOptions& o) {
 }
 
 LabelMap build_labels(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
-  const char* const option = o.labels ? "--labels" : "--bands";
-  const bool runs = suffix_of(o.input) == ".runs";
-  std::error_code error;
-  const bool volume = is_volume_name(o.input) || std::filesystem::is_directory(o.input, error);
-  if (!runs && !volume)
-    throw Error(ErrorCode::bad_argument, fmt::format("{} does not apply to '{}', which is no volume", option, o.input),
-                "leave it out");
-  refuse_options(
-      o.input, runs ? "a run stream" : "a volume",
-      {{o.fit.has_value(), "--fit"}, {o.voxel_size.has_value(), "--voxel-size"}, {o.rule.has_value(), "--rule"}});
-  if (!runs) return from_volume(session, o, like, facts);
-  refuse_options(o.input, "a run stream",
-                 {{o.bands.has_value(), "--bands"}, {o.depth.has_value(), "--depth"}, {o.centre, "--centre"}});
+  if (suffix_of(o.input) != ".runs") return from_volume(session, o, like, facts);
   const LabelMap labels = session.stage("build", [&](const Work&) { return read_label_runs(o.input); });
   facts["labels"] = true;
   facts["depth"] = labels.depth();

@@ -27,11 +27,6 @@ void declare_points_options(CLI::App& app, BuildOptions& o) {
 }
 
 Octree build_points(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
-  refuse_options(o.input, "a point cloud",
-                 {{o.rule.has_value(), "--rule"},
-                  {o.range.has_value(), "--range"},
-                  {o.label.has_value(), "--label"},
-                  {o.centre, "--centre"}});
   MeshPlacement placement;
   if (like) {
     placement = {like->depth(), like->frame()};

@@ -6,13 +6,6 @@
 namespace blackleaf::cli {
 
 Octree build_silhouettes(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
-  refuse_options(o.input, "a list of silhouettes",
-                 {{o.fit.has_value(), "--fit"},
-                  {o.voxel_size.has_value(), "--voxel-size"},
-                  {o.rule.has_value(), "--rule"},
-                  {o.range.has_value(), "--range"},
-                  {o.label.has_value(), "--label"},
-                  {o.centre, "--centre"}});
   const std::optional<int> depth = like ? std::optional(like->depth()) : o.depth;
   if (like) facts["like"] = base_name(*o.like);
   const SilhouetteSet set = session.stage("read", [&](const Work&) { return read_silhouettes(o.input, depth); });

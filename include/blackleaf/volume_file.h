@@ -47,8 +47,12 @@ Octree read_volume(const std::filesystem::path& path, const VolumeOptions& optio
 
 struct LabelVolumeOptions {
   std::optional<Bands> bands = {};  // without them the values themselves are the labels
-  int depth = 0;                    // as in VolumeOptions
+  /// As in VolumeOptions.
+  int depth = 0;
   bool centre = false;
+  std::string series = {};
+  std::optional<std::array<double, 3>> spacing = {};
+  std::function<void(const std::string&)> warn = {};
 };
 
 /// The labels of a volume file, as label_map_from_voxels() makes them; frame and errors as of read_volume(). Read slice

@@ -32,7 +32,7 @@ class LabelVolumeJob {
     if (options_.depth < 0 || options_.depth > kMaxDepth)
       throw Error(ErrorCode::bad_argument, fmt::format("depth {} is out of range", options_.depth),
                   "use 1 to 20, or 0 for the smallest that holds the volume");
-    source_ = detail::open_volume(path_);
+    source_ = detail::open_volume(path_, {options_.series, options_.spacing, options_.warn});
     const detail::ImageInformation& information = source_->information();
     size_ = detail::solid_size(information);
     placed_ = detail::place_volume(path_, information, options_.depth, options_.centre);
