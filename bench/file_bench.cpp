@@ -1,4 +1,5 @@
-// file/N: bytes of the .octree file; memory/N: bytes of the octree in memory; save/N and load/N: to bytes and back.
+// file/N: bytes of the .octree file; memory/N: bytes of the octree in memory; save/N/tT and load/N/tT:
+// to bytes and back on T threads.
 #include "blackleaf/octree_file.h"
 #include "blackleaf/runs.h"
 #include "compressed_size.h"
@@ -36,14 +37,18 @@ void add_file() {
     sized("file/" + side, "bits-zstd", [=] { return compressed_size(bit_volume(depth)); });
     sized("memory/" + side, "ours", [=] { return bunny(depth).memory_bytes(); });
     sized("memory/" + side, "dense", [=] { return std::size_t{1} << (3 * depth); });
-    contender("save/" + side, "ours", [=](benchmark::State& state) {
-      const Octree& octree = bunny(depth);
-      for (auto _ : state) benchmark::DoNotOptimize(to_bytes(octree));
-    });
-    contender("load/" + side, "ours", [=](benchmark::State& state) {
-      const std::vector<std::uint8_t> file = to_bytes(bunny(depth));
-      for (auto _ : state) benchmark::DoNotOptimize(from_bytes(file));
-    });
+    for (const int threads : {1, 2}) {
+      const Work work{threads, {}};
+      const std::string end = side + "/t" + std::to_string(threads);
+      contender("save/" + end, "ours", [=](benchmark::State& state) {
+        const Octree& octree = bunny(depth);
+        for (auto _ : state) benchmark::DoNotOptimize(to_bytes(octree, "{}", work));
+      });
+      contender("load/" + end, "ours", [=](benchmark::State& state) {
+        const std::vector<std::uint8_t> file = to_bytes(bunny(depth));
+        for (auto _ : state) benchmark::DoNotOptimize(from_bytes(file, "bunny", work));
+      });
+    }
   }
 }
 

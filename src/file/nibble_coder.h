@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -112,47 +113,88 @@ struct alignas(16) NibbleModel {
 
 inline constexpr std::uint32_t kLowState = 1u << 16;  // states are at least this between symbols
 
-/// Takes down symbols with their models' shares, forwards; their bytes are made at the end, backwards.
-class NibbleEncoder {
+/// Takes down symbols with their models' shares.
+class NibbleTaker {
  public:
-  static constexpr bool kWrites = true;
-  using InHand = NibbleEncoder&;
-  unsigned symbol(NibbleModel& model, unsigned symbol, int rate) {
-    taken_.push_back(model.begin(symbol) << 16 | model.share(symbol));
+  /// Requires: there is room.
+  [[gnu::always_inline]] unsigned symbol(NibbleModel& model, unsigned symbol, int rate) {
+    *next_++ = model.begin(symbol) << 16 | model.share(symbol);
     model.update(symbol, rate);
     return symbol;
   }
 
+ protected:
+  std::uint32_t* next_ = nullptr;
+};
+
+/// Takes down symbols forwards; their bytes are made at the end, backwards.
+class NibbleEncoder : public NibbleTaker {
+ public:
+  static constexpr bool kWrites = true;
+  using InHand = NibbleTaker;  // a copy that a loop can keep in registers
+
+  /// Room for so many more symbols.
+  void make_room(std::size_t symbols) {
+    if (static_cast<std::size_t>(end_ - next_) < symbols) grow(symbols);
+  }
+  void check() const {}
+
   std::vector<std::uint8_t> finish() const {
-    std::vector<std::uint16_t> reversed;
-    std::array<std::uint32_t, 2> states = {kLowState, kLowState};
-    for (std::size_t i = taken_.size(); i-- > 0;) {
-      std::uint32_t& state = states[i & 1];
-      const std::uint32_t begin = taken_[i] >> 16, share = taken_[i] & 0xFFFF;
+    const auto count = static_cast<std::size_t>(next_ - taken_.get());
+    // A symbol puts out 16 bits at most; one more is written and does not count.
+    const auto bits = std::make_unique_for_overwrite<std::uint16_t[]>(count + 1);
+    std::uint16_t* const end = bits.get() + count + 1;
+    std::uint16_t* first = end;
+    std::uint32_t odd = kLowState, even = kLowState;
+    const auto put = [&](std::uint32_t& state, std::uint32_t taken) {
+      const std::uint32_t begin = taken >> 16, share = taken & 0xFFFF;
       // The quotient below must fit in 32 - kShareBits bits.
-      if (state >> (32 - kShareBits) >= share) {
-        reversed.push_back(static_cast<std::uint16_t>(state));
-        state >>= 16;
-      }
+      const bool full = state >> (32 - kShareBits) >= share;  // without a branch, which nobody could predict
+      first[-1] = static_cast<std::uint16_t>(state);
+      first -= full;
+      state >>= full * 16u;
       const auto quotient = static_cast<std::uint32_t>(state * nibble::kReciprocals[share] >> 46);
       state = (quotient << kShareBits) + (state - quotient * share) + begin;
+    };
+    std::size_t i = count;
+    if (i & 1) put(even, taken_[--i]);
+    for (; i > 0; i -= 2) {
+      put(odd, taken_[i - 1]);
+      put(even, taken_[i - 2]);
     }
-    std::vector<std::uint8_t> bytes(8 + 2 * reversed.size());
-    std::memcpy(bytes.data(), states.data(), 8);
-    std::reverse(reversed.begin(), reversed.end());
-    if (!reversed.empty()) std::memcpy(bytes.data() + 8, reversed.data(), 2 * reversed.size());
+    const auto length = 2 * static_cast<std::size_t>(end - first);
+    std::vector<std::uint8_t> bytes(8 + length);
+    std::memcpy(bytes.data(), &even, 4);
+    std::memcpy(bytes.data() + 4, &odd, 4);
+    if (length) std::memcpy(bytes.data() + 8, first, length);
     return bytes;
   }
 
  private:
-  std::vector<std::uint32_t> taken_;
+  [[gnu::noinline]] void grow(std::size_t symbols) {
+    const auto used = static_cast<std::size_t>(next_ - taken_.get());
+    const std::size_t room = 2 * used + symbols + 4000;
+    auto more = std::make_unique_for_overwrite<std::uint32_t[]>(room);
+    std::copy_n(taken_.get(), used, more.get());
+    taken_ = std::move(more);
+    next_ = taken_.get() + used;
+    end_ = taken_.get() + room;
+  }
+
+  std::unique_ptr<std::uint32_t[]> taken_;
+  std::uint32_t* end_ = nullptr;  // of the room
 };
 
-/// Gives the symbols back. Throws Damage when the bytes end too early.
+/// Gives the symbols back. It does not look for the end of the bytes at every symbol: check() does, and is called
+/// before more than kPadding / 2 symbols have been read since the last time.
 class NibbleDecoder {
  public:
   static constexpr bool kWrites = false;
   using InHand = NibbleDecoder;  // a copy that a loop can keep in registers
+  /// Readable bytes behind the last one, whatever they are.
+  static constexpr std::size_t kPadding = 64;
+
+  /// Requires: kPadding more bytes can be read behind these, and all live as long as the decoder.
   explicit NibbleDecoder(std::span<const std::uint8_t> bytes) : next_(bytes.data()), end_(next_ + bytes.size()) {
     if (bytes.size() < 8 || bytes.size() % 2 != 0) throw Damage{"is too short"};
     std::memcpy(&state_, next_, 4);
@@ -166,16 +208,21 @@ class NibbleDecoder {
     const unsigned symbol = model.find(slot);
     std::uint32_t state = model.share(symbol) * (state_ >> kShareBits) + slot - model.begin(symbol);
     model.update(symbol, rate);
-    if (state < kLowState) {
-      if (next_ == end_) throw Damage{"ends too early"};
-      std::uint16_t more;
-      std::memcpy(&more, next_, 2);
-      next_ += 2;
-      state = state << 16 | more;
-    }
+    // Without a branch, which nobody could predict.
+    std::uint16_t more;
+    std::memcpy(&more, next_, 2);
+    const std::uint32_t low = state < kLowState;
+    state = state << 16 * low | (more & (0 - low));
+    next_ += 2 * low;
     state_ = other_;
     other_ = state;
     return symbol;
+  }
+
+  void make_room(std::size_t /*symbols*/) {}
+  /// Throws Damage if more has been read than there is.
+  void check() const {
+    if (next_ > end_) throw Damage{"ends too early"};
   }
 
   /// Everything that was written has been read, and nothing else.

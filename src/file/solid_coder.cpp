@@ -14,16 +14,27 @@ namespace {
 // Colours as they are coded; gray also stands for a face of both colours.
 enum : unsigned { kWhite = 0, kBlack = 1, kGray = 2 };
 
-// A node that both writer and reader know.
+// A node above bricks that both writer and reader know. Of a uniform node all bits of the masks are alike.
 struct Known {
-  std::uint64_t word = 0;  // as in octree.h, children by their index in Walk::nodes_; of a uniform node all bits alike
-  std::uint32_t faces =
-      0;  // above bricks: colours of the quarters of its upper faces: bits 8a + 2i + 4j are those of axis a and the
-          // quarter with the coordinates i and j on the other two axes, the lower axis first
-  std::uint32_t colour = kWhite;
+  std::uint32_t faces = 0;  // colours of the quarters of its upper faces: bits 8a + 2i + 4j are those of axis a and the
+                            // quarter with the coordinates i and j on the other two axes, the lower axis first
+  std::uint8_t black = 0, gray = 0;
+  std::uint64_t first = 0;  // of its gray children, where nodes of their level stand
 };
 
-constexpr std::array<Known, 2> kUniform = {{{0, 0, kWhite}, {~std::uint64_t{0}, 0x555555, kBlack}}};
+// One of level 3, with its bricks; those of one colour have all bits alike.
+struct Block : Known {
+  std::array<std::uint64_t, 8> bricks{};
+};
+
+constexpr std::uint32_t kBlackFaces = 0x555555;
+constexpr std::array<Known, 2> kUniform = {{{}, {kBlackFaces, 0xFF, 0, 0}}};
+constexpr std::array<Block, 2> kUniformBlock = [] {
+  std::array<Block, 2> blocks{};
+  static_cast<Known&>(blocks[1]) = kUniform[1];
+  blocks[1].bricks.fill(~std::uint64_t{0});
+  return blocks;
+}();
 
 // Two bits for the colour of a face from its four quarters.
 constexpr std::array<std::uint8_t, 256> kFaceColour = [] {
@@ -60,6 +71,17 @@ using BrickOrder = std::integer_sequence<unsigned, 0, 1, 2, 4, 3, 5, 6, 7>;
 // know nothing at first and slow down as they learn.
 constexpr int kByteRate = 5, kFirstPairRate = 2, kLastPairRate = 5, kSymbolsPerRate = 16;
 
+// A grid of 3^3: where the octants of its upper 2^3 are, and the steps along its axes.
+constexpr std::array<std::uint8_t, 8> kGrid = {13, 14, 16, 17, 22, 23, 25, 26};
+constexpr std::array<std::uint8_t, 3> kGridStep = {1, 3, 9};
+
+// The symbols of a brick whose bytes are all rare; nothing has more.
+constexpr std::size_t kMostSymbols = 24;
+static_assert(2 * kMostSymbols <= NibbleDecoder::kPadding);
+
+// Colours behind two children: one face towards -x, two towards -y, two towards -z.
+constexpr std::size_t kPairContexts = 3 * 9 * 9;
+
 // What is learnt while a chunk is coded.
 struct Models {
   Models() {
@@ -74,9 +96,9 @@ struct Models {
   }
 
   std::vector<NibbleModel> bytes = CornerModel::get().models();
-  std::array<NibbleModel, 17> rare;         // of bytes that are not in their context's list: halves
-  std::array<NibbleModel, 3 * 1024> pairs;  // [level 3, 4, above][colours behind]
-  std::array<std::uint8_t, 3 * 1024> pair_symbols{};
+  std::array<NibbleModel, 17> rare;                  // of bytes that are not in their context's list: halves
+  std::array<NibbleModel, 3 * kPairContexts> pairs;  // [level 3, 4, above][colours behind]
+  std::array<std::uint8_t, 3 * kPairContexts> pair_symbols{};
 };
 
 // The way through a chunk that writer and reader share: `Coder` takes the true symbols down, or finds them.
@@ -85,65 +107,87 @@ class Walk {
  public:
   explicit Walk(Coder& coder) : coder_(coder) {}
 
-  using Behind = std::array<const Known*, 3>;  // the neighbours towards -x, -y and -z
-
-  Known node(int level, const Behind& behind, const Node& truth) {
-    return level == 2 ? brick(behind, truth, BrickOrder()) : inner(level, behind, truth);
+  /// Goes through the chunk's own node.
+  void top(int level, const Node& truth) {
+    if (level == 2)
+      top_.bricks[0] = brick({}, Coder::kWrites ? truth.brick() : 0);
+    else if (level == 3)
+      block(top_, {&kUniformBlock[0], &kUniformBlock[0], &kUniformBlock[0]}, truth);
+    else
+      static_cast<Known&>(top_) = inner(level, {&kUniform[0], &kUniform[0], &kUniform[0]}, truth);
   }
 
-  // The same nodes in the order of the curve.
-  Subtree gather(const Known& node, int level, unsigned table, NodeArrays& arrays) const {
-    if (level == 2) return Subtree::brick(node.word);
-    const auto black = static_cast<unsigned>(node.word & 0xFF), gray = static_cast<unsigned>(node.word >> 8 & 0xFF);
-    const Known* next = first_child(node, level);
-    std::array<std::uint64_t, 8> words;  // of the gray children
-    const auto count = static_cast<unsigned>(std::popcount(gray));
-    if (level == 3) {
-      for (unsigned i = 0; i < count; ++i) words[i] = next[i].word;
-    } else {
-      for (const curve::Step step : curve::kSteps[table]) {
-        if (!(gray >> step.octant & 1)) continue;
-        const auto i = static_cast<unsigned>(std::popcount(gray & ((1u << step.octant) - 1)));
-        words[i] = gather(next[i], level - 1, step.table, arrays).word;
-      }
-    }
-    return arrays.close(level, black, gray, std::span(words).first(count));
+  /// The same nodes in the order of the curve.
+  Subtree gather(int level, unsigned table, NodeArrays& arrays) const {
+    return level == 2   ? Subtree::brick(top_.bricks[0])
+           : level == 3 ? gather_block(top_, arrays)
+                        : gather_inner(top_, level, table, arrays);
   }
 
  private:
-  const Known* first_child(const Known& node, int level) const {
-    return nodes_[static_cast<std::size_t>(level - 1)].data() + (node.word >> 16);
+  using Behind = std::array<const Known*, 3>;  // the neighbours towards -x, -y and -z
+  using BlocksBehind = std::array<const Block*, 3>;
+
+  static Subtree gather_block(const Block& block, NodeArrays& arrays) {
+    std::array<std::uint64_t, 8> words;
+    std::size_t count = 0;
+    for (unsigned rest = block.gray; rest; rest &= rest - 1)
+      words[count++] = block.bricks[static_cast<unsigned>(std::countr_zero(rest))];
+    return arrays.close(3, block.black, block.gray, std::span(words).first(count));
   }
 
-  const Known* child(const Known& node, int level, unsigned octant) const {
-    // Without branches, which nobody could predict. The word of a uniform node has all bits alike.
-    const bool gray = (node.word >> (8 + octant) & (node.colour >> 1) & 1) != 0;
-    const auto before = static_cast<std::size_t>(std::popcount(node.word >> 8 & ((1u << octant) - 1)));
-    const Known* const stored =
-        nodes_[static_cast<std::size_t>(level - 1)].data() + ((node.word >> 16) + before) * gray;
-    const Known* const uniform = &kUniform[node.word >> octant & 1];
-    return gray ? stored : uniform;
+  Subtree gather_inner(const Known& node, int level, unsigned table, NodeArrays& arrays) const {
+    std::array<std::uint64_t, 8> words;  // of the gray children
+    for (const curve::Step step : curve::kSteps[table]) {
+      if (!(node.gray >> step.octant & 1)) continue;
+      const std::size_t i = before(node.gray, step.octant);
+      words[i] = (level == 4 ? gather_block(blocks_[node.first + i], arrays)
+                             : gather_inner(nodes(level - 1)[node.first + i], level - 1, step.table, arrays))
+                     .word;
+    }
+    return arrays.close(level, node.black, node.gray, std::span(words).first(before(node.gray, 8)));
+  }
+
+  // The number of set bits below a place.
+  static std::size_t before(unsigned mask, unsigned place) {
+    return static_cast<std::size_t>(std::popcount(mask & ((1u << place) - 1)));
+  }
+
+  std::vector<Known>& nodes(int level) { return nodes_[static_cast<std::size_t>(level)]; }
+  const std::vector<Known>& nodes(int level) const { return nodes_[static_cast<std::size_t>(level)]; }
+
+  // A child of a node whose children are stored among `stored`.
+  template <class Child>
+  static const Child* child(const Known& node, unsigned octant, const Child* stored,
+                            const std::array<Child, 2>& uniform) {
+    return node.gray >> octant & 1 ? stored + node.first + before(node.gray, octant)
+                                   : &uniform[node.black >> octant & 1];
   }
 
   template <unsigned... kOctants>
-  Known brick(const Behind& behind, const Node& truth, std::integer_sequence<unsigned, kOctants...>) {
-    const std::array<std::uint64_t, 3> before = {behind[0]->word, behind[1]->word, behind[2]->word};
-    const std::uint64_t true_bits = Coder::kWrites ? truth.brick() : 0;
+  [[gnu::always_inline]] std::uint64_t brick(const std::array<std::uint64_t, 3>& behind, std::uint64_t true_bits,
+                                             std::integer_sequence<unsigned, kOctants...>) {
     std::uint64_t bits = 0;
     // Coder and pointers in hand, so that the models' stores are not feared to change them.
     typename Coder::InHand coder = coder_;
     NibbleModel* const models = models_.bytes.data();
     const CornerModel& corners = corners_;
-    (add_byte<kOctants>(coder, models, corners, bits, before,
+    (add_byte<kOctants>(coder, models, corners, bits, behind,
                         static_cast<unsigned>(true_bits >> (8 * kOctants) & 0xFF)),
      ...);
     put_back(coder);
     if (bits == 0 || ~bits == 0) throw Damage{"has a brick of one colour"};
-    return {bits, 0, kGray};
+    return bits;
   }
 
-  void put_back(typename Coder::InHand& coder) {
-    if constexpr (!Coder::kWrites) coder_ = coder;
+  [[gnu::noinline]] std::uint64_t brick(const std::array<std::uint64_t, 3>& behind, std::uint64_t true_bits) {
+    coder_.make_room(kMostSymbols);
+    return brick(behind, true_bits, BrickOrder());
+  }
+
+  void put_back(const typename Coder::InHand& coder) {
+    static_cast<typename Coder::InHand&>(coder_) = coder;
+    coder_.check();
   }
 
   template <unsigned kOctant>
@@ -161,7 +205,7 @@ class Walk {
     if (rank == 15) [[unlikely]] {
       put_back(coder);
       byte = rare_byte(faces, truth);
-      if constexpr (!Coder::kWrites) coder = coder_;
+      coder = coder_;
     }
     bits |= std::uint64_t{byte} << (8 * kOctant);
   }
@@ -173,81 +217,136 @@ class Walk {
     return byte;
   }
 
-  Known inner(int level, const Behind& behind, const Node& truth) {
+  // Tells the colours of a node's children.
+  void colours(Known& node, int level, const std::array<std::uint32_t, 3>& faces, const Node& truth) {
     const std::uint64_t true_word = Coder::kWrites ? truth.word() : 0;
-    const auto true_colour = [&](unsigned octant) {
-      return static_cast<unsigned>((true_word >> octant & 1) | (true_word >> (7 + octant) & 2));
+    const auto true_pair = [&](unsigned i) {
+      const std::uint64_t black = true_word >> (2 * i), gray = true_word >> (8 + 2 * i);
+      return static_cast<unsigned>((black & 1) | (gray & 1) << 1 | (black & 2) << 1 | (gray & 2) << 2);
     };
-    const std::size_t set = 1024 * static_cast<std::size_t>(std::min(level, 5) - 3);
+    coder_.make_room(kMostSymbols);
+    const std::size_t set = kPairContexts * static_cast<std::size_t>(std::min(level, 5) - 3);
     std::array<unsigned, 4> pairs{};
     unsigned black = 0, gray = 0;
     typename Coder::InHand coder = coder_;
     NibbleModel* const models = models_.pairs.data() + set;
     std::uint8_t* const all_symbols = models_.pair_symbols.data() + set;
     for (unsigned i = 0; i < 4; ++i) {  // the octants 2i and 2i + 1
-      const unsigned x = behind[0]->faces >> (2 * i) & 3;
-      const unsigned y = i & 1 ? pairs[i ^ 1] : behind[1]->faces >> (8 + 2 * i) & 15;
-      const unsigned z = i & 2 ? pairs[i ^ 2] : behind[2]->faces >> (16 + 4 * i) & 15;
-      const unsigned at = x | y << 2 | z << 6;
-      std::uint8_t& symbols = all_symbols[at];
-      const int rate = std::min(kLastPairRate, kFirstPairRate + symbols / kSymbolsPerRate);
-      symbols = static_cast<std::uint8_t>(symbols + (symbols < 255));
-      const unsigned pair = coder.symbol(models[at], true_colour(2 * i) | true_colour(2 * i + 1) << 2, rate);
-      if ((pair & 3) == 3 || pair >= 12) throw Damage{"has a node of unknown colour"};
+      const unsigned x = faces[0] >> (2 * i) & 3;
+      const unsigned y = i & 1 ? pairs[i ^ 1] : faces[1] >> (8 + 2 * i) & 15;
+      const unsigned z = i & 2 ? pairs[i ^ 2] : faces[2] >> (16 + 4 * i) & 15;
+      const unsigned at = x + 3 * (y - (y >> 2)) + 27 * (z - (z >> 2));
+      const unsigned seen = all_symbols[at];
+      const int rate = std::min(kLastPairRate, kFirstPairRate + static_cast<int>(seen) / kSymbolsPerRate);
+      all_symbols[at] = static_cast<std::uint8_t>(seen + (seen < 255));
+      const unsigned pair = coder.symbol(models[at], true_pair(i), rate);
+      if (pair & pair >> 1 & 5) throw Damage{"has a node of unknown colour"};
       pairs[i] = pair;
       black |= ((pair & 1) | (pair >> 1 & 2)) << (2 * i);
       gray |= ((pair >> 1 & 1) | (pair >> 2 & 2)) << (2 * i);
     }
     put_back(coder);
     if (gray == 0 && (black == 0 || black == 0xFF)) throw Damage{"has a node of one colour"};
+    node.black = static_cast<std::uint8_t>(black);
+    node.gray = static_cast<std::uint8_t>(gray);
+  }
 
-    std::array<Known, 8> children;
-    for (unsigned o = 0; o < 8; ++o) children[o] = kUniform[black >> o & 1];
-    for (unsigned rest = gray; rest; rest &= rest - 1) {
-      const auto o = static_cast<unsigned>(std::countr_zero(rest));
-      // These stay where they are: the nodes of the children's level are stored when this node is done.
-      Behind before;
-      for (unsigned axis = 0; axis < 3; ++axis)
-        before[axis] = o >> axis & 1 ? &children[o ^ 1u << axis] : child(*behind[axis], level, o ^ 1u << axis);
-      children[o] = node(level - 1, before, Coder::kWrites ? truth.child(static_cast<int>(o)) : Node());
-    }
-    unsigned faces = 0;
+  void block(Block& block, const BlocksBehind& behind, const Node& truth) {
+    colours(block, 3, {behind[0]->faces, behind[1]->faces, behind[2]->faces}, truth);
+    // The bricks behind and the eight of the block in one grid, so that every brick finds its neighbours in the same
+    // way: which octants are gray is nothing that a processor could predict.
+    std::array<std::uint64_t, 27> grid;
     for (unsigned axis = 0; axis < 3; ++axis)
-      for (unsigned quarter = 0; quarter < 4; ++quarter) {
-        const Known& part = children[kUpper[axis][quarter]];
-        const unsigned colour = level == 3 ? brick_face(part.word, axis) : kFaceColour[part.faces >> (8 * axis) & 0xFF];
-        faces |= colour << (8 * axis + 2 * quarter);
-      }
-    auto& below = nodes_[static_cast<std::size_t>(level - 1)];
-    const std::uint64_t first = gray ? below.size() : 0;
-    for (unsigned rest = gray; rest; rest &= rest - 1)
-      below.push_back(children[static_cast<unsigned>(std::countr_zero(rest))]);
-    return {black | gray << 8 | first << 16, faces, kGray};
+      for (const unsigned o : kUpper[axis]) grid[kGrid[o] - 2u * kGridStep[axis]] = behind[axis]->bricks[o];
+    for (unsigned o = 0; o < 8; ++o) grid[kGrid[o]] = -static_cast<std::uint64_t>(block.black >> o & 1);
+    for (unsigned rest = block.gray; rest; rest &= rest - 1) {
+      const auto o = static_cast<unsigned>(std::countr_zero(rest));
+      std::uint64_t* const at = grid.data() + kGrid[o];
+      *at = brick({*(at - kGridStep[0]), *(at - kGridStep[1]), *(at - kGridStep[2])},
+                  Coder::kWrites ? truth.child(static_cast<int>(o)).word() : 0);
+    }
+    for (unsigned o = 0; o < 8; ++o) block.bricks[o] = grid[kGrid[o]];
+    std::uint32_t faces = 0;
+    for (unsigned axis = 0; axis < 3; ++axis)
+      for (unsigned quarter = 0; quarter < 4; ++quarter)
+        faces |= brick_face(block.bricks[kUpper[axis][quarter]], axis) << (8 * axis + 2 * quarter);
+    block.faces = faces;
+  }
+
+  // A node of level 4 or more.
+  Known inner(int level, const Behind& behind, const Node& truth) {
+    Known node;
+    colours(node, level, {behind[0]->faces, behind[1]->faces, behind[2]->faces}, truth);
+    if (level == 4) {
+      if (blocks_.capacity() - blocks_.size() < 8) blocks_.reserve(2 * blocks_.size() + 64);  // none moves below
+      node.first = blocks_.size();
+      children<Block>(node, behind, blocks_.data(), kUniformBlock, [&](const BlocksBehind& near, unsigned o) {
+        blocks_.emplace_back();
+        block(blocks_.back(), near, Coder::kWrites ? truth.child(static_cast<int>(o)) : Node());
+        return &blocks_.back();
+      });
+    } else {
+      // These stay where they are: the nodes of the children's level are stored when this node is done.
+      auto& below = nodes(level - 1);
+      std::array<Known, 8> made;
+      children<Known>(node, behind, below.data(), kUniform, [&](const Behind& near, unsigned o) {
+        made[o] = inner(level - 1, near, Coder::kWrites ? truth.child(static_cast<int>(o)) : Node());
+        return &made[o];
+      });
+      node.first = below.size();
+      for (unsigned rest = node.gray; rest; rest &= rest - 1)
+        below.push_back(made[static_cast<unsigned>(std::countr_zero(rest))]);
+    }
+    return node;
+  }
+
+  // Calls make(neighbours, octant) for the gray children and finds the node's faces. The neighbours' children are among
+  // `stored`.
+  template <class Child, class Make>
+  void children(Known& node, const Behind& behind, const Child* stored, const std::array<Child, 2>& uniform,
+                const Make& make) {
+    std::array<const Child*, 8> all;
+    for (unsigned o = 0; o < 8; ++o) all[o] = &uniform[node.black >> o & 1];
+    for (unsigned rest = node.gray; rest; rest &= rest - 1) {
+      const auto o = static_cast<unsigned>(std::countr_zero(rest));
+      std::array<const Child*, 3> near;
+      for (unsigned axis = 0; axis < 3; ++axis)
+        near[axis] = o >> axis & 1 ? all[o ^ 1u << axis] : child(*behind[axis], o ^ 1u << axis, stored, uniform);
+      all[o] = make(near, o);
+    }
+    for (unsigned axis = 0; axis < 3; ++axis)
+      for (unsigned quarter = 0; quarter < 4; ++quarter)
+        node.faces |= std::uint32_t{kFaceColour[all[kUpper[axis][quarter]]->faces >> (8 * axis) & 0xFF]}
+                      << (8 * axis + 2 * quarter);
   }
 
   Coder& coder_;
   const CornerModel& corners_ = CornerModel::get();
   Models models_;
+  Block top_;
+  std::vector<Block> blocks_;                            // the gray nodes of level 3, children of one node together
   std::array<std::vector<Known>, kMaxDepth + 1> nodes_;  // the gray children of finished nodes, by level
 };
-
-constexpr std::array<const Known*, 3> kNothingBehind = {&kUniform[0], &kUniform[0], &kUniform[0]};
 
 }  // namespace
 
 std::vector<std::uint8_t> encode_solid(const Node& node) {
   NibbleEncoder coder;
   Walk<NibbleEncoder> walk(coder);
-  walk.node(node.level(), kNothingBehind, node);
+  walk.top(node.level(), node);
   return coder.finish();
 }
 
 Subtree decode_solid(std::span<const std::uint8_t> bytes, int level, unsigned table, NodeArrays& arrays) {
-  NibbleDecoder coder(bytes);
+  std::vector<std::uint8_t> padded;
+  padded.reserve(bytes.size() + NibbleDecoder::kPadding);
+  padded.assign(bytes.begin(), bytes.end());
+  padded.resize(bytes.size() + NibbleDecoder::kPadding);
+  NibbleDecoder coder({padded.data(), bytes.size()});
   Walk<NibbleDecoder> walk(coder);
-  const Known top = walk.node(level, kNothingBehind, Node());
+  walk.top(level, Node());
   coder.expect_end();
-  return walk.gather(top, level, table, arrays);
+  return walk.gather(level, table, arrays);
 }
 
 }  // namespace blackleaf::detail

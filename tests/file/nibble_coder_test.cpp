@@ -85,13 +85,32 @@ TEST(NibbleCoder, RoundTrips) {
     for (auto& symbol : symbols) symbol = static_cast<unsigned>(random() % (random() % skew + 1));
     std::array<NibbleModel, 2> models = {even_model(), even_model()};
     NibbleEncoder encoder;
+    encoder.make_room(length);
     for (std::size_t i = 0; i < length; ++i) encoder.symbol(models[i % 3 == 0], symbols[i], 5);
-    const auto bytes = encoder.finish();
+    auto bytes = encoder.finish();
+    const std::size_t size = bytes.size();
+    bytes.resize(size + NibbleDecoder::kPadding);
     models = {even_model(), even_model()};
-    NibbleDecoder decoder(bytes);
-    for (std::size_t i = 0; i < length; ++i) ASSERT_EQ(decoder.symbol(models[i % 3 == 0], 0, 5), symbols[i]);
+    NibbleDecoder decoder({bytes.data(), size});
+    for (std::size_t i = 0; i < length; ++i) {
+      ASSERT_EQ(decoder.symbol(models[i % 3 == 0], 0, 5), symbols[i]);
+      ASSERT_NO_THROW(decoder.check());
+    }
     EXPECT_NO_THROW(decoder.expect_end());
   }
+}
+
+// Whoever reads on behind the last byte is told so.
+TEST(NibbleCoder, EndsTooEarly) {
+  std::vector<std::uint8_t> bytes(8 + NibbleDecoder::kPadding, 0);
+  bytes[2] = bytes[6] = 1;  // both states 2^16, no bits
+  NibbleDecoder decoder({bytes.data(), 8});
+  NibbleModel model = even_model();
+  EXPECT_NO_THROW(decoder.check());
+  EXPECT_NO_THROW(decoder.expect_end());
+  decoder.symbol(model, 0, 5);
+  EXPECT_THROW(decoder.check(), Damage);
+  EXPECT_THROW(decoder.expect_end(), Damage);
 }
 
 // The reader of docs/FILE_FORMAT.md, with 64-bit arithmetic and a search by hand.
@@ -100,6 +119,7 @@ TEST(NibbleCoder, PlainReader) {
   NibbleModel model = even_model();
   NibbleEncoder encoder;
   std::vector<unsigned> symbols(2000);
+  encoder.make_room(symbols.size());
   for (auto& symbol : symbols) encoder.symbol(model, symbol = static_cast<unsigned>(random() % (random() % 16 + 1)), 4);
   const auto bytes = encoder.finish();
   PlainModel plain(even_model());
