@@ -54,8 +54,7 @@ bool holds(Component component, std::string_view word) {
   return false;
 }
 
-// NRRD allows commas between numbers.
-bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f' || c == ','; }
+bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 
 }  // namespace
 

@@ -50,8 +50,9 @@ TEST_F(VolumeDamage, TextThatItsTypeCannotHold) {
   refuse("e.nrrd", nrrd("uint8", "12345 6 7 "), {"12345"});
   refuse("f.nrrd", nrrd("uint8", "1 2      \n\n\n3\n"), {"4 voxels", "3 numbers"});
   refuse("g.nrrd", nrrd("float", "1 2 x 4"), {"value 3 is 'x'"});
+  refuse("i.nrrd", nrrd("uint8", "1 2 3,4 5"), {"value 3 is '3,4'"});
   refuse("h.nrrd", nrrd("uint8", "1 2 3 " + std::string(100000, '4')), {"value 4"});
-  test::write_file(folder_ / "good.nrrd", nrrd("uint8", "255 0\n 7,1\n"));
+  test::write_file(folder_ / "good.nrrd", nrrd("uint8", "255 0\n 7 1\n"));
   EXPECT_EQ(read_volume(folder_ / "good.nrrd").depth(), 1);
   test::write_file(folder_ / "real.nrrd", nrrd("float", "1e-3 -2.5 nan 1e30\n"));
   EXPECT_EQ(read_volume(folder_ / "real.nrrd").depth(), 1);
