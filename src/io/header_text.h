@@ -1,4 +1,4 @@
-// Headers as text: what the checks of volume headers share.
+// Headers as text: what the checks of volume headers and mesh files share.
 #pragma once
 
 #include <charconv>
