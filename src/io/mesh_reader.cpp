@@ -220,8 +220,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   if (!child.read(&head, sizeof head) || !read_items(child, head.error_size, text) ||
       !read_items(child, head.vertices, mesh.vertices) || !read_items(child, head.triangles, mesh.triangles)) {
     if (child.interrupted()) throw Error(ErrorCode::cancelled, name + ": reading it was interrupted");
-    throw Error(ErrorCode::bad_input, name + ": is damaged: reading it ended abnormally",
-                "get it again from its source");
+    throw Error(ErrorCode::bad_input, name + ": is damaged or too much for the reader of its format, which ended",
+                "get it again from its source, or save it as PLY or STL");
   }
   if (head.error_size > 0) throw Error(head.code, text);
   for (const auto& triangle : mesh.triangles)
