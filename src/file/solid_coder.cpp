@@ -167,7 +167,8 @@ class Walk {
   template <unsigned... kOctants>
   [[gnu::always_inline]] std::uint64_t brick(const std::array<std::uint64_t, 3>& behind, std::uint64_t true_bits,
                                              std::integer_sequence<unsigned, kOctants...>) {
-    std::uint64_t bits = 0;
+    // The writer knows all bits beforehand, so that no byte waits for the one before.
+    std::uint64_t bits = Coder::kWrites ? true_bits : 0;
     // Coder and pointers in hand, so that the models' stores are not feared to change them.
     typename Coder::InHand coder = coder_;
     NibbleModel* const models = models_.bytes.data();
@@ -201,13 +202,13 @@ class Walk {
     const unsigned faces = corners.faces(behind(0), behind(1), behind(2));
     const unsigned rank =
         coder.symbol(models[corners.context(faces)], Coder::kWrites ? corners.rank(faces, truth) : 0, kByteRate);
-    unsigned byte = corners.byte(faces, rank);
+    unsigned byte = Coder::kWrites ? truth : corners.byte(faces, rank);
     if (rank == 15) [[unlikely]] {
       put_back(coder);
       byte = rare_byte(faces, truth);
       coder = coder_;
     }
-    bits |= std::uint64_t{byte} << (8 * kOctant);
+    if constexpr (!Coder::kWrites) bits |= std::uint64_t{byte} << (8 * kOctant);
   }
 
   [[gnu::noinline]] unsigned rare_byte(unsigned faces, unsigned truth) {

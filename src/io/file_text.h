@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
@@ -12,19 +11,16 @@
 #include <string_view>
 #include <vector>
 
-#include "blackleaf/error.h"
 #include "file/input_file.h"
+#include "file/stop_check.h"
+#include "io/header_text.h"
 
 namespace blackleaf::detail {
 
 inline constexpr const char* kCutOff = "the file was cut off, get it again";
 inline constexpr const char* kDamaged = "it is damaged, get it again";
 
-[[noreturn]] inline void refuse(const std::string& name, const std::string& what, const char* remedy) {
-  throw Error(ErrorCode::bad_input, name + ": " + what, remedy);
-}
-
-/// The bytes of a file from a position on, in order.
+/// The bytes of a file from a position on, in order; reading them throws Error(cancelled) when the program is to stop.
 class Bytes {
  public:
   /// Requires: file.is_regular(), and that it lives as long as this object.
@@ -65,8 +61,8 @@ class Bytes {
     return done;
   }
   /// The next line that has more than blanks and comments ('#' to its end); false at the end of the file. What goes
-  /// beyond 64 KiB in one line is dropped.
-  bool line(std::string& text) {
+  /// beyond `most` bytes in one line is dropped, so that a file without line ends takes no memory.
+  bool line(std::string& text, std::size_t most = 65536) {
     do {
       text.clear();
       bool comment = false;
@@ -74,7 +70,7 @@ class Bytes {
       if (c < 0) return false;
       for (; c >= 0 && c != '\n' && c != '\r'; c = get()) {
         comment = comment || c == '#';
-        if (!comment && text.size() < 65536) text += static_cast<char>(c);
+        if (!comment && text.size() < most) text += static_cast<char>(c);
       }
       // "\r\n" ends one line.
       if (c == '\r' && peek() == '\n') get();
@@ -87,6 +83,7 @@ class Bytes {
 
  private:
   bool fill() {
+    check_for_stop();
     const std::uint64_t rest = file_.size() - next_;
     held_ = static_cast<std::size_t>(std::min<std::uint64_t>(rest, buffer_.size()));
     at_ = 0;
@@ -103,23 +100,6 @@ class Bytes {
   std::uint64_t lines_ = 0;
 };
 
-/// In small letters.
-inline std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-/// What stands between blanks.
-inline std::vector<std::string_view> words(std::string_view text) {
-  std::vector<std::string_view> result;
-  for (std::size_t at = 0; (at = text.find_first_not_of(" \t\v\f", at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(text.find_first_of(" \t\v\f", at), text.size());
-    result.push_back(text.substr(at, end - at));
-    at = end;
-  }
-  return result;
-}
-
 /// A whole number that fills the word.
 inline std::optional<std::uint64_t> whole_number(std::string_view word) {
   std::uint64_t value = 0;
@@ -130,7 +110,7 @@ inline std::optional<std::uint64_t> whole_number(std::string_view word) {
 
 /// A number that fills the word, in decimal notation; "nan" and "inf" are numbers, and what is beyond the doubles is
 /// infinite. None for anything else.
-inline std::optional<double> number(std::string_view word) {
+inline std::optional<double> decimal(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

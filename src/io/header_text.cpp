@@ -26,10 +26,14 @@ std::string shown(std::string_view text) {
   return "'" + result + "'";
 }
 
-std::vector<std::string> words(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> result;
-  for (std::string word; stream >> word;) result.push_back(word);
+std::vector<std::string_view> words(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\v\f\r\n";
+  std::vector<std::string_view> result;
+  for (std::size_t at = 0; (at = text.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+    result.push_back(text.substr(at, end - at));
+    at = end;
+  }
   return result;
 }
 

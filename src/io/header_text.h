@@ -1,4 +1,4 @@
-// Headers as text: what the checks of volume headers share.
+// Headers as text: what the checks of volume headers and mesh files share.
 #pragma once
 
 #include <charconv>
@@ -24,7 +24,7 @@ inline constexpr std::size_t kLongestTextHeader = std::size_t{1} << 20;
 /// A header's word as a message can show it.
 std::string shown(std::string_view text);
 /// Its words, between blanks.
-std::vector<std::string> words(const std::string& text);
+std::vector<std::string_view> words(std::string_view text);
 /// Without blanks at its ends.
 std::string trimmed(std::string_view text);
 /// In small letters (ASCII).

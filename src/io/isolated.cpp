@@ -1,6 +1,7 @@
 #include "io/isolated.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -14,6 +15,7 @@
 #include <cstring>
 
 #include "blackleaf/error.h"
+#include "file/stop_check.h"
 
 namespace blackleaf::detail {
 namespace {
@@ -114,6 +116,11 @@ Isolated::~Isolated() { finish(true); }
 bool Isolated::read(void* bytes, std::size_t size) {
   auto* to = static_cast<std::uint8_t*>(bytes);
   while (size > 0) {
+    check_for_stop();
+    // With an end to the wait: a signal that comes right before it would go unnoticed.
+    pollfd wait{descriptor_, POLLIN, 0};
+    const int ready = poll(&wait, 1, 200);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
     const ssize_t count = ::read(descriptor_, to, size);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;

@@ -37,7 +37,9 @@ class Isolated {
   Isolated(const Isolated&) = delete;
   Isolated& operator=(const Isolated&) = delete;
 
-  /// The next bytes of the answer; false when it ends before, which is how crashes and limits show.
+  /// The next bytes of the answer; false when it ends before, which is how crashes and limits show. Asks
+  /// check_for_stop() upon signals and several times a second, so it may throw Error(cancelled); the destructor then
+  /// ends the child.
   bool read(void* bytes, std::size_t size);
   /// After read() has given false: whether the child was ended by a signal that asks a program to stop (Ctrl-C, ...).
   bool interrupted();

@@ -1,8 +1,6 @@
 #include "io/mesh_checks.h"
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "blackleaf/error.h"
 #include "io/file_text.h"
 #include "io/ply_header.h"
 
@@ -19,98 +16,30 @@ namespace {
 
 // ---- STL
 
-void check_stl(const InputFile& file, const std::string& name) {
+// Throws, or tells whether it is text.
+bool check_stl(const InputFile& file, const std::string& name) {
   constexpr std::uint64_t kHeader = 84, kTriangle = 50;
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 65536)), '\0');
   file.read_at(0, {reinterpret_cast<std::uint8_t*>(head.data()), head.size()});
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   const bool solid = first != std::string::npos && lower(head.substr(first, 5)) == "solid";
+  const bool printable =
+      std::all_of(head.begin(), head.begin() + static_cast<std::ptrdiff_t>(std::min(head.size(), kHeader)),
+                  [](unsigned char c) { return c >= 9 && c < 127; });
   if (file.size() < kHeader) {
-    if (solid || std::all_of(head.begin(), head.end(), [](unsigned char c) { return c >= 9 && c < 127; })) return;
+    if (solid || printable) return true;
     refuse(name, fmt::format("has {} bytes, fewer than the {} of an STL header", file.size(), kHeader), kCutOff);
   }
   std::uint64_t triangles = 0;
   for (std::size_t i = 0; i < 4; ++i)
     triangles |= static_cast<std::uint64_t>(static_cast<unsigned char>(head[80 + i])) << (8 * i);
   const std::uint64_t wanted = kHeader + kTriangle * triangles;
-  if (wanted == file.size()) return;
-  // Text of some kind, as all of its beginning is.
-  if (solid && lower(head).find("facet") != std::string::npos) return;
-  if (std::all_of(head.begin(), head.begin() + kHeader, [](unsigned char c) { return c >= 9 && c < 127; })) return;
+  if (wanted == file.size()) return false;
+  if ((solid && lower(head).find("facet") != std::string::npos) || printable) return true;
   refuse(
       name,
       fmt::format("its header tells of {} triangles ({} bytes) but there are {} bytes", triangles, wanted, file.size()),
       wanted > file.size() ? kCutOff : kDamaged);
-}
-
-// ---- OFF
-
-void check_off(const InputFile& file, const std::string& name) {
-  Bytes bytes(file, 0);
-  std::string line;
-  std::vector<std::string> numbers;  // of the header, which may be spread over lines: vertices, faces, edges
-  bool keyword = false;
-  while (numbers.size() < 2) {
-    if (!bytes.line(line)) {
-      if (!keyword) return;
-      refuse(name, "its header has no numbers of vertices and faces", kCutOff);
-    }
-    auto parts = words(line);
-    if (!keyword) {
-      const std::string_view word = parts.front();
-      // A dimension of its own ("n") and other beginnings: the reader proper knows what to do.
-      if (!word.ends_with("OFF") || word.find('n') != std::string_view::npos) return;
-      keyword = true;
-      parts.erase(parts.begin());
-    }
-    for (const auto part : parts) {
-      if (!whole_number(part)) {
-        if (part == "BINARY") return;
-        refuse(name, fmt::format("its header has \"{}\" where a number should be", part.substr(0, 20)), kDamaged);
-      }
-      numbers.emplace_back(part);
-    }
-  }
-  const std::uint64_t vertices = *whole_number(numbers[0]), faces = *whole_number(numbers[1]);
-  // The edge count may stand on a line of its own; then it is the first of the lines below, and one number only.
-  const std::string counts = fmt::format("its header tells of {} vertices and {} faces", vertices, faces);
-  if (vertices > file.size() / 2 || faces > file.size() / 2)  // a line has two bytes at least
-    refuse(name, fmt::format("{} but there are {} bytes", counts, file.size()), kCutOff);
-  bool pending = false;  // a line read ahead
-  if (numbers.size() == 2 && bytes.line(line)) pending = words(line).size() != 1;
-  const auto next = [&](const char* what, std::uint64_t found) {
-    if (std::exchange(pending, false)) return;
-    if (!bytes.line(line)) refuse(name, fmt::format("{} but there are {} {}", counts, found, what), kCutOff);
-  };
-  for (std::uint64_t i = 0; i < vertices; ++i) next("vertices", i);
-  for (std::uint64_t i = 0; i < faces; ++i) {
-    next("faces", i);
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    const auto number = [&]() -> std::optional<std::uint64_t> {
-      while (at < end && (*at == ' ' || *at == '\t')) ++at;
-      std::uint64_t value = 0;
-      const auto [stop, error] = std::from_chars(at, end, value);
-      if (error != std::errc{}) return std::nullopt;
-      at = stop;
-      return value;
-    };
-    const auto size = number();
-    if (!size) refuse(name, fmt::format("face {} does not begin with its number of vertices", i), kDamaged);
-    for (std::uint64_t k = 0; k < *size; ++k) {
-      const auto vertex = number();
-      if (!vertex) {
-        if (line.size() >= 65536) break;  // the rest of the line was dropped
-        refuse(name, fmt::format("face {} tells of {} vertices but names {}", i, *size, k),
-               bytes.left() == 0 ? kCutOff : kDamaged);
-      }
-      if (*vertex >= vertices)
-        refuse(name,
-               fmt::format("face {} refers to vertex {}, and the last is {}", i, *vertex,
-                           static_cast<std::int64_t>(vertices) - 1),
-               kDamaged);
-    }
-  }
 }
 
 // ---- PLY
@@ -124,8 +53,21 @@ void check_ply_text(const InputFile& file, const std::string& name, const PlyHea
              kCutOff);
     };
     if (element.properties.empty()) return;  // whether it has lines is not said
-    for (std::uint64_t i = 0; i < element.count; ++i)
+    for (std::uint64_t i = 0; i < element.count; ++i) {
       if (!bytes.line(line)) fail(i);
+      if (!header.known || line.size() >= 65536) continue;  // part of it may have been dropped
+      const auto numbers = words(line);
+      std::uint64_t wanted = 0;
+      for (const PlyProperty& property : element.properties) {
+        std::uint64_t list = 0;
+        if (property.count_size() > 0 && wanted < numbers.size())
+          list = std::min<std::uint64_t>(number<std::uint64_t>(numbers[wanted]).value_or(0), file.size());
+        wanted += 1 + list;
+      }
+      if (numbers.size() < wanted)
+        refuse(name, fmt::format("\"{}\" {} has {} numbers instead of {}", element.name, i, numbers.size(), wanted),
+               bytes.left() == 0 ? kCutOff : kDamaged);
+    }
   }
 }
 
@@ -177,13 +119,39 @@ void check_ply(const InputFile& file, const std::string& name) {
     check_ply_binary(file, name, *header);
 }
 
+// ---- OBJ
+
+// assimp passes over vertices of other numbers of coordinates, and all faces then refer to wrong ones.
+void check_obj(const InputFile& file, const std::string& name) {
+  Bytes bytes(file, 0);
+  std::string line;
+  bool continued = false;  // a backslash at its end joined the line before to this one
+  for (std::uint64_t vertices = 0; bytes.line(line);) {
+    const bool joined = std::exchange(continued, line.ends_with('\\'));
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (joined || line[first] != 'v' || first + 1 >= line.size()) continue;
+    if (line[first + 1] != ' ' && line[first + 1] != '\t') continue;  // vn, vt, vp
+    ++vertices;
+    if (continued || line.size() >= 65536) continue;
+    const auto parts = words(line);
+    std::size_t numbers = 0;
+    while (numbers + 1 < parts.size() && decimal(parts[numbers + 1])) ++numbers;
+    if (numbers != 3 && numbers != 4 && numbers != 6)
+      refuse(name, fmt::format("vertex {} has {} coordinates ({})", vertices, numbers, shown(line.substr(first))),
+             "give it 3, 4 or, with a colour, 6");
+  }
+}
+
 }  // namespace
+
+bool is_stl_text(const InputFile& file, const std::filesystem::path& path) {
+  return lower(path.extension().string()) == ".stl" && check_stl(file, path.string());
+}
 
 void check_mesh_file(const InputFile& file, const std::filesystem::path& path) {
   const std::string suffix = lower(path.extension().string()), name = path.string();
-  if (suffix == ".stl") check_stl(file, name);
-  if (suffix == ".off") check_off(file, name);
   if (suffix == ".ply") check_ply(file, name);
+  if (suffix == ".obj") check_obj(file, name);
 }
 
 }  // namespace blackleaf::detail

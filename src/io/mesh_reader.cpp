@@ -1,9 +1,7 @@
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,8 +13,12 @@
 #include "blackleaf/error.h"
 #include "blackleaf/mesh_file.h"
 #include "file/input_file.h"
+#include "io/header_text.h"
 #include "io/isolated.h"
 #include "io/mesh_checks.h"
+#include "io/off_reader.h"
+#include "io/polygon.h"
+#include "io/stl_text_reader.h"
 
 namespace blackleaf {
 namespace {
@@ -84,25 +86,32 @@ class SceneReader {
     std::vector<bool> used(part.mNumVertices, false);
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
       const aiFace& face = part.mFaces[i];
-      if (face.mNumIndices != 3) continue;  // points and lines bound nothing; polygons have been triangulated
-      std::array<std::uint32_t, 3> triangle{};
-      for (unsigned k = 0; k < 3; ++k) {
+      if (face.mNumIndices < 3) continue;  // points and lines bound nothing
+      for (unsigned k = 0; k < face.mNumIndices; ++k) {
         if (face.mIndices[k] >= part.mNumVertices)
           fail(fmt::format("a face refers to vertex {} of {}", face.mIndices[k], part.mNumVertices), "export it again");
         used[face.mIndices[k]] = true;
-        triangle[k] = static_cast<std::uint32_t>(first + face.mIndices[k]);
       }
-      mesh_.triangles.push_back(triangle);
     }
     for (unsigned i = 0; i < part.mNumVertices; ++i) {
       const aiVector3D& v = part.mVertices[i];
       Eigen::Vector3d position(v.x, v.y, v.z);
       if (!transform.identity) position = transform.linear * position + transform.shift;
       if (!position.allFinite()) {
-        if (used[i]) fail(fmt::format("vertex {} is not finite", first + i), "export it again");
+        if (used[i])
+          fail(fmt::format("vertex {} is not finite, or too large for single precision", first + i), "export it again");
         position.setZero();  // nothing refers to it
       }
       mesh_.vertices.push_back(position);
+    }
+    std::vector<std::uint32_t> corners;
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+      const aiFace& face = part.mFaces[i];
+      if (face.mNumIndices < 3) continue;
+      corners.clear();
+      for (unsigned k = 0; k < face.mNumIndices; ++k)
+        corners.push_back(static_cast<std::uint32_t>(first + face.mIndices[k]));
+      detail::append_polygon(mesh_.vertices, corners, mesh_.triangles);
     }
   }
 
@@ -117,8 +126,9 @@ TriangleMesh read_with_assimp(const std::string& name) {
   const aiScene* scene = nullptr;
   std::string why;
   try {
-    // Nothing that moves vertices: no joining, no rescaling, no pre-transformation in single precision.
-    scene = importer.ReadFile(name, aiProcess_Triangulate);
+    // Nothing that moves vertices: no joining, no rescaling, no pre-transformation in single precision. And no
+    // triangulation: assimp's drops what remains of a polygon that it cannot cut.
+    scene = importer.ReadFile(name, 0);
     why = reason(importer.GetErrorString());
   } catch (const std::bad_alloc&) {
     throw;
@@ -174,8 +184,7 @@ bool read_items(detail::Isolated& child, std::uint64_t count, Container& items) 
 
 // Bytes that reading goes through: those of the file, unpacked, and of the files beside it that glTF refers to.
 std::uint64_t bytes_to_read(const std::filesystem::path& path, std::uint64_t size) {
-  std::string suffix = path.extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string suffix = detail::lower(path.extension().string());
   if (suffix == ".3mf" || suffix == ".zae") return 16 * size;
   if (suffix != ".gltf") return size;
   std::error_code error;
@@ -197,6 +206,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
     const detail::InputFile file(path);
     if (!file.is_regular()) throw Error(ErrorCode::io, name + ": is not an ordinary file", "copy it to one first");
     if (file.size() == 0) throw Error(ErrorCode::bad_input, name + ": is empty", "get it again from its source");
+    if (detail::lower(path.extension().string()) == ".off") return detail::read_off(file, name);
+    if (detail::is_stl_text(file, path)) return detail::read_stl_text(file, name);
     detail::check_mesh_file(file, path);
     const std::uint64_t bytes = bytes_to_read(path, file.size());
     limits.memory = (std::uint64_t{2} << 30) + 64 * bytes;
@@ -209,8 +220,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   if (!child.read(&head, sizeof head) || !read_items(child, head.error_size, text) ||
       !read_items(child, head.vertices, mesh.vertices) || !read_items(child, head.triangles, mesh.triangles)) {
     if (child.interrupted()) throw Error(ErrorCode::cancelled, name + ": reading it was interrupted");
-    throw Error(ErrorCode::bad_input, name + ": is damaged: reading it ended abnormally",
-                "get it again from its source");
+    throw Error(ErrorCode::bad_input, name + ": is damaged or too much for the reader of its format, which ended",
+                "get it again from its source, or save it as PLY or STL");
   }
   if (head.error_size > 0) throw Error(head.code, text);
   for (const auto& triangle : mesh.triangles)

@@ -171,7 +171,7 @@ class PcdReader {
         if (word.empty()) refuse(name_, fmt::format("point {} has {} numbers instead of {}", i, k, words_), kDamaged);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           if (places_[axis].word != k) continue;
-          const std::optional<double> value = number(word);
+          const std::optional<double> value = decimal(word);
           if (!value)
             refuse(name_, fmt::format("point {} has \"{}\" for its {}", i, word.substr(0, 40), "xyz"[axis]), kDamaged);
           point[static_cast<Eigen::Index>(axis)] = *value;

@@ -74,7 +74,7 @@ class TextVertices {
       if (word.empty()) fail(index, property);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (places[axis] != k) continue;
-        const std::optional<double> value = number(word);
+        const std::optional<double> value = decimal(word);
         if (!value) fail(index, property);
         point[static_cast<Eigen::Index>(axis)] = *value;
       }

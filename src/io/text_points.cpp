@@ -82,7 +82,7 @@ class TextReader {
 
   // Names in place of numbers, which may stand in the first line.
   bool columns_by_name() {
-    if (std::any_of(fields_.begin(), fields_.end(), [](std::string_view field) { return number(field).has_value(); }))
+    if (std::any_of(fields_.begin(), fields_.end(), [](std::string_view field) { return decimal(field).has_value(); }))
       return false;
     std::array<std::optional<std::size_t>, 3> columns;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -103,7 +103,7 @@ class TextReader {
     Eigen::Vector3d p;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::optional<double> value =
-          columns_[axis] < fields_.size() ? number(fields_[columns_[axis]]) : std::nullopt;
+          columns_[axis] < fields_.size() ? decimal(fields_[columns_[axis]]) : std::nullopt;
       if (!value) {
         std::string shown(line.substr(0, 40));
         std::replace_if(

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 // Sizes as the header tells them: at least one voxel along each dimension.
 void check_sizes(const fs::path& path, const std::string& text) {
-  const std::vector<std::string> sizes = words(text);
+  const std::vector<std::string_view> sizes = words(text);
   for (const std::string& size : sizes) {
     const auto value = number<std::int64_t>(size);
     if (!value)
@@ -91,7 +91,7 @@ void check_meta_header(const fs::path& path) {
     for (const char* name : {"ElementSpacing", "ElementSize", "Offset", "Position", "Origin", "TransformMatrix",
                              "Rotation", "Orientation"})
       if (key == name)
-        for (const std::string& word : words(value)) {
+        for (const std::string_view word : words(value)) {
           const auto x = number<double>(word);
           if (!x || !std::isfinite(*x))
             refuse(path, fmt::format("its {} has {} for a number", name, shown(word)), kMendHeader);
@@ -113,7 +113,7 @@ void check_nrrd_header(const fs::path& path) {
       if (value.find("nan") != std::string::npos || value.find("inf") != std::string::npos)
         refuse(path, fmt::format("its {} has numbers that are not finite", key), kMendHeader);
     if (key == "spacings")
-      for (const std::string& word : words(value))
+      for (const std::string_view word : words(value))
         if (const auto x = number<double>(word); !x || !std::isfinite(*x) || *x <= 0)
           refuse(path, fmt::format("its spacings have {}, which is no side of a voxel", shown(word)), kMendHeader);
     return !key.empty();

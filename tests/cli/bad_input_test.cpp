@@ -163,6 +163,28 @@ TEST_F(BadInput, NamedPipesAreNotWaitedFor) {
   refused({"verify", "pipe"}, "'pipe' is a named pipe");
 }
 
+TEST_F(BadInput, Meshes) {
+  const auto off = [&](const std::string& vertices, const std::string& faces, const std::string& part,
+                       std::vector<std::string> more = {}) {
+    write("m.off", "OFF\n3 2 0\n" + vertices + faces);
+    more.insert(more.begin(), {"build", "m.off", "-o", "o.octree"});
+    refused(more, part);
+  };
+  const std::string flat = "0 0 0\n1 0 0\n0 1 0\n", both = "3 0 1 2\n3 0 2 1\n";
+  off(flat, "2 0 1\n1 2\n", "m.off: has no triangles");
+  off(flat, "3 0 1 2\n3 0 2 3\n", "face 1 refers to vertex 3, and the last is 2");
+  off("0 0 0\nnan 0 0\n0 1 0\n", both, "vertex 1 is not finite");
+  off("0 0 0\n0 inf 0\n0 1 0\n", both, "vertex 1 is not finite");
+  off("0 0 0\n0 0 1e999\n0 1 0\n", both, "vertex 1 is not finite");
+  off("5 5 5\n5 5 5\n5 5 5\n", both, "blackleaf: m.off: ");
+  off("0 0 0\n1e9 0 0\n0 1 0\n", both, "blackleaf: m.off: ", {"--voxel-size", "0.001", "--depth", "8"});
+  off("0 0 0\n1e300 0 0\n0 1e300 0\n", both, "blackleaf: m.off: ", {"--voxel-size", "1"});
+  write("m.off", "OFF\n4000000000 4000000000 0\n0 0 0\n");
+  refused({"build", "m.off", "-o", "o.octree"}, "but there are 34 bytes; the file was cut off");
+  write("m.obj", "v 0 0 0\nv 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+  refused({"build", "m.obj", "-o", "o.octree"}, "m.obj: vertex 2 has 2 coordinates");
+}
+
 TEST_F(BadInput, OptionsGivenTwice) {
   make_stl("s.stl", {0, 0, 0}, {1, 1, 1});
   refused({"build", "s.stl", "--depth", "2", "--depth", "3", "-o", "o.octree"}, "--depth is given twice");

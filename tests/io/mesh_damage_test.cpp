@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +16,7 @@
 
 #include "blackleaf/implicit.h"
 #include "blackleaf/mesh_file.h"
+#include "file/stop_check.h"
 #include "file/temporary_folder.h"
 #include "io/isolated.h"
 #include "reference/dense_grid.h"
@@ -81,23 +83,11 @@ TEST_F(MeshDamage, TextPly) {
   refuse("a.ply", replaced(whole, "face 1", "face 2"), {"2 of \"face\"", "there are 1"});
   refuse("a.ply", replaced(whole, "face 1", "face -1"), {"no good count"});
   refuse("a.ply", replaced(whole, "0 1 2", "0 1 3"), {"vertex 3"});
+  refuse("a.ply", replaced(whole, "3 0 1 2", "3 0 1"), {"\"face\" 0 has 3 numbers instead of 4", "cut off"});
+  refuse("a.ply", replaced(whole, "3 0 1 2", "4 0 1 2"), {"\"face\" 0 has 4 numbers instead of 5"});
+  refuse("a.ply", replaced(whole, "1 0 0", "1 0"), {"\"vertex\" 1 has 2 numbers instead of 3", "damaged"});
   refuse("a.ply", whole.substr(0, 20), {"end_header"});
   refuse("a.ply", replaced(whole, "end_header", std::string(70000, 'x')), {"in its first 64 KiB"});
-}
-
-TEST_F(MeshDamage, Off) {
-  EXPECT_EQ(triangles("a.off", kTetrahedron), 4u);
-  EXPECT_EQ(triangles("a.off", replaced(kTetrahedron, "OFF\n", "OFF ")), 4u);
-  EXPECT_EQ(triangles("a.off", replaced(kTetrahedron, "OFF\n", "OFF # made by hand\n")), 4u);
-  refuse("a.off", "OFF\n999999999 999999999 0\n", {"999999999 vertices", "cut off"});
-  refuse("a.off", "OFF\n4\n", {"no numbers"});
-  refuse("a.off", replaced(kTetrahedron, "4 4 6", "5 4 6"), {});
-  refuse("a.off", replaced(kTetrahedron, "4 4 6", "4 7 6"), {"7 faces but there are 4 faces", "cut off"});
-  refuse("a.off", replaced(kTetrahedron, "4 4 6", "12 4 6"), {"there are 8 vertices"});
-  refuse("a.off", replaced(kTetrahedron, "3 1 2 3", "3 1 2 77"), {"face 3 refers to vertex 77", "the last is 3"});
-  refuse("a.off", replaced(kTetrahedron, "3 1 2 3", "3 1 2 -1"), {"face 3"});
-  for (std::size_t length = 4; length < kTetrahedron.size() - 1; ++length)
-    refuse("a.off", kTetrahedron.substr(0, length), {});
 }
 
 TEST_F(MeshDamage, Stl) {
@@ -113,9 +103,41 @@ TEST_F(MeshDamage, Stl) {
                       "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                       "endloop\nendfacet\nendsolid a\n"),
             1u);
+  const std::string corners = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
+  const auto facet = [](const std::string& vertices) {
+    return "facet normal 0 0 1\nouter loop\n" + vertices + "\nendloop\nendfacet\n";
+  };
+  EXPECT_EQ(triangles("a.stl", "solid facet 7 vertex\r" + facet(corners) + "endsolid\nSOLID b\n" + facet(corners)), 2u);
+  refuse("a.stl", "solid a\n" + facet(corners + "vertex 1 1 0\n") + "endsolid a\n",
+         {"facet 0 has 4 vertices", "divide it into triangles"});
+  refuse("a.stl", "solid a\n" + facet(corners) + facet(corners.substr(0, 26)) + "endsolid a\n",
+         {"facet 1 has 2 vertices", "damaged"});
+  refuse("a.stl", "solid a\n" + facet(corners) + "facet normal 0 0 1\nouter loop\nvertex 0 0 0\n",
+         {"facet 1 has 1 vertices", "cut off"});
+  refuse("a.stl", "solid a\n" + facet(corners) + corners + "endsolid a\n", {"a vertex outside a facet before facet 1"});
+  refuse("a.stl", "solid a\n" + facet(corners.substr(0, 26) + "vertex 1 zero 0") + "endsolid a\n",
+         {"facet 0", "'zero'"});
+  refuse("a.stl", "solid a\n" + facet(corners.substr(0, 26) + "vertex 1 2") + "endsolid a\n", {"facet 0", "'endloop'"});
+  refuse("a.stl", "solid a\n" + facet(corners.substr(0, 26) + "vertex 1 2 nan") + "endsolid a\n", {"'nan'", "finite"});
+  refuse("a.stl", "solid a\n" + facet(corners.substr(0, 26) + "vertex 1 2 1e999") + "endsolid a\n", {"'1e999'"});
+  refuse("a.stl", "solid a\nendsolid a\n", {"has no triangles"});
+  test::write_file(folder_ / "a.stl", "SOLID a\n" + facet("VERTEX 0.1 -2E-3\n+1e300 vertex 1 1e-999 0 vertex 7 8 9"));
+  EXPECT_EQ(read_mesh(folder_ / "a.stl").vertices,
+            (std::vector<Eigen::Vector3d>{{0.1, -2e-3, 1e300}, {1, 0, 0}, {7, 8, 9}}));
   std::string solid = whole;  // some programs begin binary files so, too
   solid.replace(0, 5, "solid");
   EXPECT_EQ(triangles("a.stl", solid), (whole.size() - 84) / 50);
+}
+
+TEST_F(MeshDamage, Obj) {
+  const std::string whole =
+      "# v 1\nv 0 0 0\nv 1 0 0 1\n v +0 1 -.5e0 1 0 0\nvt 0 0\nvn 0 0 1\nv \\\n0 0 7\nv 0 0 9\nf 1 2 3\n";
+  EXPECT_EQ(triangles("a.obj", whole), 1u);
+  refuse("a.obj", replaced(whole, "v 0 0 9", "v 0 9"), {"vertex 5 has 2 coordinates ('v 0 9')", "3, 4 or"});
+  refuse("a.obj", replaced(whole, "v 0 0 0", "v 0 zero 0"), {"vertex 1 has 1 coordinates"});
+  refuse("a.obj", replaced(whole, "v 0 0 0", "v 0 0 0 1 2"), {"vertex 1 has 5 coordinates"});
+  refuse("a.obj", replaced(whole, "v 0 0 0", "v 0 nan 0"), {"vertex", "not finite"});
+  refuse("a.obj", replaced(whole, "f 1 2 3", "f 1 2 9"), {"out of range"});
 }
 
 // Bytes changed at random: an answer or an Error, whatever assimp makes of them.
@@ -202,6 +224,38 @@ TEST(MeshIsolated, EndsOfAllKinds) {
       },
       false);
 #endif
+}
+
+std::atomic<bool> told_to_stop{false};
+
+// Told to stop before and during the wait for a child that does not answer: the wait ends, and so does the child.
+TEST(MeshIsolated, StopsWhenTold) {
+  detail::set_stop_check([] {
+    if (told_to_stop) throw Error(ErrorCode::cancelled, "interrupted");
+  });
+  for (const int delay : {0, 30}) {
+    SCOPED_TRACE(delay);
+    told_to_stop = false;
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+      told_to_stop = true;
+    });
+    expect_error(ErrorCode::cancelled, {"interrupted"}, [] {
+      detail::Isolated child({std::uint64_t{1} << 30, 100}, [](const auto&) { sleep(1000); });
+      char byte = 0;
+      child.read(&byte, 1);
+    });
+    stopper.join();
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+  }
+  told_to_stop = true;
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.off", "a.obj"}) {
+    test::write_file(folder / name, kTetrahedron);
+    expect_error(ErrorCode::cancelled, {"interrupted"}, [&] { read_mesh(folder / name); });
+  }
+  detail::set_stop_check(nullptr);
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
 }
 
 // An answer larger than a pipe holds, read in pieces; and one that nobody reads.
