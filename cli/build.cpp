@@ -37,6 +37,7 @@ Octree from_runs(Session& session, const BuildOptions& o, const std::optional<Oc
                   {o.fit.has_value(), "--fit"},
                   {o.voxel_size.has_value(), "--voxel-size"},
                   {o.rule.has_value(), "--rule"},
+                  {o.inside.has_value(), "--inside"},
                   {o.range.has_value(), "--range"},
                   {o.centre, "--centre"}});
   Octree octree = session.stage("build", [&](const Work&) {

@@ -20,7 +20,7 @@ struct BuildOptions {
   std::string input, output;
   std::optional<int> depth;
   std::optional<double> fit, voxel_size, label;
-  std::optional<std::string> rule, range, like;
+  std::optional<std::string> rule, inside, range, like;
   bool centre = false;
   bool labels = false;
   std::optional<std::string> bands;

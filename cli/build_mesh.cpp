@@ -1,8 +1,11 @@
 // blackleaf build: triangle meshes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "blackleaf/mesh.h"
 #include "blackleaf/mesh_file.h"
@@ -32,6 +35,55 @@ TriangleMesh read_as_mesh(const std::string& input) {
   }
 }
 
+std::string count(std::uint64_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+// What is wrong with the mesh and what was made of it, on one line; "" for a sound one.
+std::string faults(const MeshSolid& solid) {
+  std::vector<std::string> found;
+  const MeshReport& report = solid.found;
+  if (report.open_edges > 0) found.push_back(count(report.open_edges, "open edge", "open edges"));
+  if (const std::uint64_t between = report.misoriented_edges - report.open_edges)
+    found.push_back(
+        count(between, "edge whose triangles face different ways", "edges whose triangles face different ways"));
+  if (solid.one_sided_parts > 0) found.push_back(count(solid.one_sided_parts, "one-sided part", "one-sided parts"));
+  if (solid.overlaps) found.push_back("surfaces that overlap or pass through each other");
+  if (found.empty()) return "";
+  if (report.non_manifold_edges > 0)
+    found.push_back(count(report.non_manifold_edges, "non-manifold edge", "non-manifold edges"));
+  found.push_back(count(report.components, "component", "components"));
+  std::string done = solid.inside == Inside::parity ? "inside is where rays cross the surface an odd number of times"
+                                                    : "inside is where the winding number is above 1/2";
+  if (solid.turned_triangles > 0) done = count(solid.turned_triangles, "triangle", "triangles") + " turned, " + done;
+  return fmt::format("{}; {}", fmt::join(found, ", "), done);
+}
+
+// A mesh thinner than the voxels, at whatever depth was asked for, is more likely a mistake than an empty solid.
+void refuse_if_missed(const std::string& input, const TriangleMesh& mesh, const MeshPlacement& placement) {
+  Eigen::AlignedBox3d box;
+  const Eigen::Matrix3d to_voxels = placement.frame.axes.inverse();
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle) box.extend(to_voxels * (mesh.vertices[v] - placement.frame.origin));
+  const Eigen::Vector3d size = box.sizes();
+  if (size.minCoeff() >= 1) return;
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: no voxel's centre is inside: the mesh is {:.4g} x {:.4g} x {:.4g} voxels", input,
+                          size.x(), size.y(), size.z()),
+              "use smaller voxels or a greater depth, or take every voxel that it touches (--rule touched)");
+}
+
+template <class Value>
+Value choice(const char* option, const std::string& given,
+             std::initializer_list<std::pair<const char*, Value>> values) {
+  std::string all;
+  for (const auto& [name, value] : values) {
+    if (given == name) return value;
+    all += (all.empty() ? "" : name == (values.end() - 1)->first ? " or " : ", ") + std::string(name);
+  }
+  throw Error(ErrorCode::bad_argument, fmt::format("{} is '{}', which is unknown", option, given), "use " + all);
+}
+
 }  // namespace
 
 void declare_mesh_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
@@ -45,15 +97,20 @@ void declare_mesh_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
   add_text(app, "--rule", o.rule, "RULE",
            "centre: a voxel is black iff its centre is inside (default); touched: iff it meets the solid at all")
       ->group(meshes);
+  add_text(app, "--inside", o.inside, "HOW",
+           "parity: where rays cross the surface an odd number of times (closed meshes only); winding: where the "
+           "generalised winding number is above 1/2; automatic (default): parity for sound meshes, else winding")
+      ->group(meshes);
 }
 
 Octree build_mesh(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
   refuse_options(o.input, "a mesh",
                  {{o.range.has_value(), "--range"}, {o.label.has_value(), "--label"}, {o.centre, "--centre"}});
   const std::string rule = o.rule.value_or("centre");
-  if (rule != "centre" && rule != "touched")
-    throw Error(ErrorCode::bad_argument, fmt::format("--rule is '{}', which is unknown", rule),
-                "use centre or touched");
+  const MeshOptions options = {
+      choice<MeshRule>("--rule", rule, {{"centre", MeshRule::centre}, {"touched", MeshRule::touched}}),
+      choice<Inside>("--inside", o.inside.value_or("automatic"),
+                     {{"automatic", Inside::automatic}, {"parity", Inside::parity}, {"winding", Inside::winding}})};
   if (o.fit && *o.fit > 1)
     throw Error(ErrorCode::bad_argument, fmt::format("--fit is {}, which is more than the universe", *o.fit),
                 "give a fraction above 0 and at most 1");
@@ -78,10 +135,16 @@ Octree build_mesh(Session& session, const BuildOptions& o, const std::optional<O
   }
   facts["depth"] = placement.depth;
   facts["rule"] = rule;
-  return session.stage("build", [&](const Work& work) {
-    const MeshRule mesh_rule = rule == "centre" ? MeshRule::centre : MeshRule::touched;
-    return naming(o.input, [&] { return octree_from_mesh(mesh, placement, mesh_rule, work); });
+  if (o.inside) facts["inside"] = *o.inside;
+  const MeshSolid solid = session.stage("build", [&](const Work& work) {
+    return naming(o.input, [&] { return solid_from_mesh(mesh, placement, options, work); });
   });
+  if (solid.octree.is_empty()) refuse_if_missed(o.input, mesh, placement);
+  if (const std::string line = faults(solid); !line.empty()) {
+    facts["inside"] = solid.inside == Inside::parity ? "parity" : "winding";
+    session.warn(o.input + ": " + line);
+  }
+  return solid.octree;
 }
 
 }  // namespace blackleaf::cli

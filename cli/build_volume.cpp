@@ -49,9 +49,11 @@ void declare_volume_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
 }
 
 Octree build_volume(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
-  refuse_options(
-      o.input, "a volume",
-      {{o.fit.has_value(), "--fit"}, {o.voxel_size.has_value(), "--voxel-size"}, {o.rule.has_value(), "--rule"}});
+  refuse_options(o.input, "a volume",
+                 {{o.fit.has_value(), "--fit"},
+                  {o.voxel_size.has_value(), "--voxel-size"},
+                  {o.rule.has_value(), "--rule"},
+                  {o.inside.has_value(), "--inside"}});
   VolumeOptions options;
   if (o.range) {
     const Range range = parse_range("--range", *o.range);

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <limits>
 #include <string>
-#include <tuple>
 
 #include "blackleaf/error.h"
 #include "octree/brick.h"
@@ -135,29 +134,11 @@ class TriangleScan {
   bool leaving_ = false;  // whether the triangle as given faces +x
 };
 
-// What the columns of a slab show of the mesh's winding numbers. A column is of a kind by the bits: 1 some centre has a
-// positive number, 2 a negative one, 4 one beyond 1 or -1.
-struct Windings {
-  struct Place {
-    std::int64_t z = std::numeric_limits<std::int64_t>::max(), y = 0, x = 0;
-    friend bool operator<(const Place& a, const Place& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
-  };
-  std::array<std::uint64_t, 8> columns{};
-  std::array<Place, 8> first{};  // where the first column of the kind became one
-
-  void add(const Windings& other) {
-    for (std::size_t kind = 0; kind < 8; ++kind) {
-      columns[kind] += other.columns[kind];
-      first[kind] = std::min(first[kind], other.first[kind]);
-    }
-  }
-};
-
 // Follows the crossings of one brick column along x.
 class ColumnSweep {
  public:
-  ColumnSweep(std::int32_t bricks, Slab& slab, Windings& windings)
-      : bricks_(bricks), slab_(slab), windings_(windings) {}
+  ColumnSweep(std::int32_t bricks, InsideRule rule, Slab& slab, Windings& windings)
+      : bricks_(bricks), rule_(rule), slab_(slab), windings_(windings) {}
 
   // Crossings of one brick column, sorted.
   void run(const Crossing* begin, const Crossing* end, std::int64_t slab_z) {
@@ -210,14 +191,16 @@ class ColumnSweep {
 
   // True if the column passes between outside and inside.
   bool step(unsigned column, int change, std::int32_t before, std::int32_t y, std::int64_t slab_z) {
-    const bool was_inside = winding_[column] != 0;
+    const bool was_inside = rule_.inside(winding_[column]);
     const int winding = winding_[column] += change;
+    windings_.lowest = std::min(windings_.lowest, winding);
+    windings_.highest = std::max(windings_.highest, winding);
     const unsigned kind = (winding > 0 ? 1u : winding < 0 ? 2u : 0u) | (winding > 1 || winding < -1 ? 4u : 0u);
     if (kind & ~kind_[column]) {
       kind_[column] |= kind;
       place_[column] = {4 * slab_z + (column >> 2), 4 * std::int64_t{y} + (column & 3), before};
     }
-    return was_inside != (winding != 0);
+    return was_inside != rule_.inside(winding);
   }
 
   void repeat(std::int32_t from, std::int32_t to, std::int32_t y, unsigned inside) {
@@ -249,6 +232,7 @@ class ColumnSweep {
   }
 
   const std::int32_t bricks_;  // along x in the universe
+  const InsideRule rule_;
   Slab& slab_;
   Windings& windings_;
   std::size_t column_begin_ = 0;
@@ -257,33 +241,47 @@ class ColumnSweep {
   std::array<Windings::Place, 16> place_{};
 };
 
-void require_simple(const Windings& windings, const GridMesh& mesh, const Frame& frame) {
-  std::uint64_t positive = 0, negative = 0, all = 0, bad = 0;
+}  // namespace
+
+void Windings::add(const Windings& other) {
+  lowest = std::min(lowest, other.lowest);
+  highest = std::max(highest, other.highest);
+  for (std::size_t kind = 0; kind < 8; ++kind) {
+    columns[kind] += other.columns[kind];
+    first[kind] = std::min(first[kind], other.first[kind]);
+  }
+}
+
+Windings::Flaw Windings::flaw() const {
+  std::uint64_t positive = 0, negative = 0;
+  Flaw result;
   for (unsigned kind = 1; kind < 8; ++kind) {
-    positive += kind & 1 ? windings.columns[kind] : 0;
-    negative += kind & 2 ? windings.columns[kind] : 0;
-    all += windings.columns[kind];
+    positive += kind & 1 ? columns[kind] : 0;
+    negative += kind & 2 ? columns[kind] : 0;
+    result.of += columns[kind];
   }
   const unsigned wrong = 4u | (positive >= negative ? 2u : 1u);
-  Windings::Place first;
   for (unsigned kind = 1; kind < 8; ++kind)
-    if (kind & wrong && windings.columns[kind] > 0) {
-      bad += windings.columns[kind];
-      first = std::min(first, windings.first[kind]);
+    if (kind & wrong && columns[kind] > 0) {
+      result.columns += columns[kind];
+      result.first = std::min(result.first, first[kind]);
     }
-  if (bad == 0) return;
-  const double x = static_cast<double>(std::min(first.x, (std::int64_t{1} << mesh.depth) - 1));
-  const Eigen::Vector3d world =
-      frame.to_world(Eigen::Vector3d(x + 0.5, static_cast<double>(first.y) + 0.5, static_cast<double>(first.z) + 0.5));
+  return result;
+}
+
+void require_simple(const Windings& windings, int depth, const Frame& frame) {
+  const Windings::Flaw flaw = windings.flaw();
+  if (flaw.columns == 0) return;
+  const double x = static_cast<double>(std::min(flaw.first.x, (std::int64_t{1} << depth) - 1));
+  const Eigen::Vector3d world = frame.to_world(
+      Eigen::Vector3d(x + 0.5, static_cast<double>(flaw.first.y) + 0.5, static_cast<double>(flaw.first.z) + 0.5));
   std::array<char, 160> place{};
   std::snprintf(place.data(), place.size(), "first near (%.6g, %.6g, %.6g)", world.x(), world.y(), world.z());
   throw Error(ErrorCode::bad_input,
-              "the mesh passes through itself or is oriented inconsistently in " + std::to_string(bad) + " of " +
-                  std::to_string(all) + " columns of voxels, " + place.data(),
+              "the mesh passes through itself or is oriented inconsistently in " + std::to_string(flaw.columns) +
+                  " of " + std::to_string(flaw.of) + " columns of voxels, " + place.data(),
               "unite its overlapping parts and turn all its triangles outward");
 }
-
-}  // namespace
 
 std::size_t Slab::find(std::int32_t y) const {
   const auto at = std::lower_bound(columns.begin(), columns.end(), y,
@@ -291,7 +289,7 @@ std::size_t Slab::find(std::int32_t y) const {
   return at != columns.end() && at->y == y ? static_cast<std::size_t>(at - columns.begin()) : columns.size();
 }
 
-Slabs slabs_of(const GridMesh& mesh, const Frame& frame, const Work& work) {
+Slabs slabs_of(const GridMesh& mesh, InsideRule rule, const Work& work) {
   Slabs result;
   // The triangles of each slab, as ranges of one list.
   std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = -1;
@@ -338,7 +336,7 @@ Slabs slabs_of(const GridMesh& mesh, const Frame& frame, const Work& work) {
         });
     }
     std::sort(crossings.begin(), crossings.end());
-    ColumnSweep sweep(bricks, result.slabs[s], windings[s]);
+    ColumnSweep sweep(bricks, rule, result.slabs[s], windings[s]);
     for (const Crossing* begin = crossings.data(); begin != crossings.data() + crossings.size();) {
       const Crossing* stop = begin;
       while (stop != crossings.data() + crossings.size() && brick_of(*stop) == brick_of(*begin)) ++stop;
@@ -346,9 +344,7 @@ Slabs slabs_of(const GridMesh& mesh, const Frame& frame, const Work& work) {
       begin = stop;
     }
   });
-  Windings all;
-  for (const Windings& w : windings) all.add(w);
-  require_simple(all, mesh, frame);
+  for (const Windings& w : windings) result.windings.add(w);
   return result;
 }
 

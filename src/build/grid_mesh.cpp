@@ -83,18 +83,27 @@ GridMesh grid_mesh(const TriangleMesh& mesh, const MeshPlacement& placement) {
     const Triangle t = {first[triangle[0]], first[triangle[1]], first[triangle[2]]};
     if (!collapsed(t)) grid.triangles.push_back(t);
   }
-  const EdgeCounts edges = count_edges(grid.triangles, grid.vertices.size());
-  if (edges.open > 0)
-    throw Error(ErrorCode::bad_input,
-                "the mesh is not closed: it has " + std::to_string(edges.open) +
-                    (edges.open == 1 ? " open edge" : " open edges"),
-                "close its holes first");
-  if (edges.misoriented > 0)
-    throw Error(ErrorCode::bad_input,
-                "the mesh is oriented inconsistently: " + std::to_string(edges.misoriented) +
-                    (edges.misoriented == 1 ? " edge is" : " edges are") + " passed unequally often in both directions",
-                "turn its triangles so that all face outward");
   return grid;
+}
+
+MeshReport GridMesh::report(bool components) const {
+  MeshReport result = report_of(triangles, vertices.size(), components);
+  result.triangles = triangles.size();
+  return result;
+}
+
+void require_closed(const MeshReport& report, bool oriented) {
+  if (report.open_edges > 0)
+    throw Error(ErrorCode::bad_input,
+                "the mesh is not closed: it has " + std::to_string(report.open_edges) +
+                    (report.open_edges == 1 ? " open edge" : " open edges"),
+                "close its holes first");
+  if (oriented && report.misoriented_edges > 0)
+    throw Error(ErrorCode::bad_input,
+                "the mesh is oriented inconsistently: " + std::to_string(report.misoriented_edges) +
+                    (report.misoriented_edges == 1 ? " edge is" : " edges are") +
+                    " passed unequally often in both directions",
+                "turn its triangles so that all face outward");
 }
 
 }  // namespace blackleaf::detail

@@ -24,7 +24,8 @@ using GridPoint = std::array<std::int64_t, 3>;
 struct GridMesh {
   int depth = 1;
   std::vector<GridPoint> vertices;
-  std::vector<Triangle> triangles;  // of welded vertices; none with two equal corners
+  std::vector<Triangle> triangles;           // of welded vertices; none with two equal corners
+  MeshReport report(bool components) const;  // of the rounded mesh, but for its degenerate triangles
 
   int fraction_bits() const { return kGridBits - depth; }
   std::int64_t centre(std::int64_t index) const { return (2 * index + 1) << (fraction_bits() - 1); }
@@ -41,7 +42,12 @@ inline Wide normal(const GridPoint& a, const GridPoint& b, const GridPoint& c, s
   return Wide{b[j] - a[j]} * (c[k] - a[k]) - Wide{b[k] - a[k]} * (c[j] - a[j]);
 }
 
-/// Rounds the mesh to the universe's grid. Throws as octree_from_mesh does, but for what only its columns can show.
+/// Rounds the mesh to the universe's grid. Throws as octree_from_mesh does, but for what says that it does not bound a
+/// solid.
 GridMesh grid_mesh(const TriangleMesh& mesh, const MeshPlacement& placement);
+
+/// Throws Error(bad_input) unless every edge of the rounded mesh, of which `report` tells, belongs to an even number of
+/// triangles and, if `oriented`, is passed equally often in both directions.
+void require_closed(const MeshReport& report, bool oriented);
 
 }  // namespace blackleaf::detail

@@ -1,6 +1,6 @@
 // Checking meshes as boundaries of solids.
+#include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "blackleaf/mesh.h"
 #include "surface.h"
@@ -58,14 +58,6 @@ bool without_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eige
          on_a_line(a.z(), a.x(), b.z(), b.x(), c.z(), c.x());
 }
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t v) {
-  while (parent[v] != v) {
-    parent[v] = parent[parent[v]];
-    v = parent[v];
-  }
-  return v;
-}
-
 }  // namespace
 
 Eigen::AlignedBox3d TriangleMesh::bounding_box() const {
@@ -83,34 +75,21 @@ MeshReport check(const TriangleMesh& mesh) {
       keys[i][static_cast<std::size_t>(axis)] = std::bit_cast<std::uint64_t>(mesh.vertices[i][axis] + 0.0);
   const std::vector<std::uint32_t> first = detail::first_equal(keys);
 
-  MeshReport report;
-  report.triangles = mesh.triangles.size();
-  std::vector<std::uint32_t> parent(first.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  std::uint64_t degenerate = 0;
   std::vector<detail::Triangle> welded;
   welded.reserve(mesh.triangles.size());
   for (const detail::Triangle& triangle : mesh.triangles) {
     const detail::Triangle t = {first[triangle[0]], first[triangle[1]], first[triangle[2]]};
     if (detail::collapsed(t)) {
-      ++report.degenerate_triangles;
+      ++degenerate;
       continue;
     }
-    report.degenerate_triangles += without_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    degenerate += without_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
     welded.push_back(t);
-    const std::uint32_t root = root_of(parent, t[0]);
-    parent[root_of(parent, t[1])] = root;
-    parent[root_of(parent, t[2])] = root;
   }
-  const detail::EdgeCounts edges = detail::count_edges(welded, first.size());
-  report.open_edges = edges.open;
-  report.non_manifold_edges = edges.non_manifold;
-  report.misoriented_edges = edges.misoriented;
-  std::vector<std::uint8_t> seen(parent.size(), 0);
-  for (const detail::Triangle& t : welded) {
-    const std::uint32_t root = root_of(parent, t[0]);
-    report.components += !seen[root];
-    seen[root] = 1;
-  }
+  MeshReport report = detail::report_of(welded, first.size(), true);
+  report.triangles = mesh.triangles.size();
+  report.degenerate_triangles = degenerate;
   return report;
 }
 

@@ -1,187 +1,78 @@
-// Octrees of closed meshes, without a dense volume.
-//
-// The columns (columns.h) leave black stretches of bricks and bricks of two colours. Laid out on the Millar curve, a
-// brick is *explicit* if it has two colours, or if it is black and shares a face with a brick that is white. Between
-// two explicit bricks the curve does not change colour: consecutive bricks share a face, so a change between two plain
-// bricks would make the black one explicit. The sorted explicit bricks, each with the colour of the gap behind it, are
-// thus the whole solid; a node without explicit bricks has the colour of the gap that it lies in.
-#include <algorithm>
-#include <limits>
-
-#include "blackleaf/curve.h"
+// Octrees of meshes: which way of telling inside from outside is taken.
 #include "blackleaf/mesh.h"
-#include "columns.h"
+
+#include "blackleaf/error.h"
+#include "column_octree.h"
 #include "octree/parallel.h"
-#include "octree/produce.h"
+#include "orient.h"
 #include "touched.h"
+#include "winding.h"
 
 namespace blackleaf {
 namespace {
 
-struct ExplicitBrick {
-  std::uint64_t number;  // on the curve of bricks
-  std::uint64_t bits;
-  friend bool operator<(const ExplicitBrick& a, const ExplicitBrick& b) { return a.number < b.number; }
-  friend bool operator==(const ExplicitBrick&, const ExplicitBrick&) = default;
-};
-
-std::uint64_t brick_number(int order, std::int32_t x, std::int32_t y, std::int32_t z) {
-  return curve::first_number(order, {4 * x, 4 * y, 4 * z, 2}) >> 6;
+// The part of the work before the surface's own voxels are added.
+Work inside_part(const Work& work, MeshRule rule) {
+  return rule == MeshRule::touched ? detail::part_of(work, 0, 0.5) : work;
 }
 
-// Calls visit(first, last) for the parts of [first, last) outside the stretches from `begin` on. Leaves `begin` at the
-// first stretch that can meet a later part. Requires: stretches are increasing.
-template <class Visit>
-void for_each_gap(std::int32_t first, std::int32_t last, const detail::Stretch*& begin, const detail::Stretch* end,
-                  const Visit& visit) {
-  while (begin != end && begin->last <= first) ++begin;
-  for (const detail::Stretch* s = begin; first < last; ++s) {
-    const std::int32_t stop = s == end ? last : std::min(last, s->first);
-    if (first < stop) visit(first, stop);
-    if (s == end) break;
-    first = s->last;
-  }
+Octree with_surface(const Octree& inside, const detail::GridMesh& grid, MeshRule rule, const Work& work) {
+  if (rule == MeshRule::centre) return inside;
+  return detail::with_touched(inside, grid, detail::part_of(work, 0.5, 1));
 }
-
-class Explicit {
- public:
-  Explicit(const detail::Slabs& slabs, int depth, const Work& work)
-      : slabs_(slabs), order_(std::max(depth, 2)), side_(1 << (order_ - 2)) {
-    std::vector<std::vector<ExplicitBrick>> parts(slabs.slabs.size());
-    detail::for_each_index(parts.size(), work, [&](std::size_t i) { collect(i, parts[i]); });
-    std::size_t size = 0;
-    for (const auto& part : parts) size += part.size();
-    bricks_.reserve(size);
-    for (auto& part : parts) {
-      bricks_.insert(bricks_.end(), part.begin(), part.end());
-      part = {};
-    }
-    detail::sort(bricks_, work);
-    bricks_.erase(std::unique(bricks_.begin(), bricks_.end()), bricks_.end());
-    gaps_.resize(bricks_.size() + 1);
-    gaps_[0] = is_black(0);
-    // In blocks, so that progress and scheduling cost little.
-    constexpr std::size_t kBlock = 4096;
-    detail::for_each_index((bricks_.size() + kBlock - 1) / kBlock, {work.threads, {}}, [&](std::size_t block) {
-      const std::size_t last = std::min(bricks_.size(), (block + 1) * kBlock);
-      for (std::size_t i = block * kBlock; i < last; ++i) gaps_[i + 1] = gap_behind(i);
-    });
-  }
-
-  const std::vector<ExplicitBrick>& bricks() const { return bricks_; }
-  /// The colour of the bricks between explicit bricks i - 1 and i, if there are any.
-  Colour gap_before(std::size_t i) const { return gaps_[i] ? Colour::black : Colour::white; }
-
- private:
-  void collect(std::size_t index, std::vector<ExplicitBrick>& out) const {
-    const detail::Slab& slab = slabs_.slabs[index];
-    const std::int32_t z = slabs_.first + static_cast<std::int32_t>(index);
-    for (const detail::MixedBrick& brick : slab.mixed)
-      out.push_back({brick_number(order_, brick.x, brick.y, z), brick.bits});
-    const detail::Slab none;
-    const detail::Slab& below = index > 0 ? slabs_.slabs[index - 1] : none;
-    const detail::Slab& above = index + 1 < slabs_.slabs.size() ? slabs_.slabs[index + 1] : none;
-    for (std::size_t i = 0; i < slab.columns.size(); ++i) {
-      const std::int32_t y = slab.columns[i].y;
-      const auto mark = [&](std::int32_t first, std::int32_t last) {
-        for (std::int32_t x = first; x < last; ++x) out.push_back({brick_number(order_, x, y, z), ~std::uint64_t{0}});
-      };
-      const detail::Stretch *const begin = slab.begin_of(i), *const end = slab.end_of(i);
-      for (const detail::Stretch* s = begin; s != end; ++s) {
-        if (!s->black) continue;
-        if (s->first > 0 && (s == begin || s[-1].last < s->first)) mark(s->first, s->first + 1);
-        if (s->last < side_ && (s + 1 == end || s[1].first > s->last)) mark(s->last - 1, s->last);
-      }
-      if (y > 0) mark_beside(begin, end, slab, y - 1, mark);
-      if (y + 1 < side_) mark_beside(begin, end, slab, y + 1, mark);
-      if (z > 0) mark_beside(begin, end, below, y, mark);
-      if (z + 1 < side_) mark_beside(begin, end, above, y, mark);
-    }
-  }
-
-  // Marks the black bricks of a column that have a white neighbour in another column.
-  template <class Mark>
-  static void mark_beside(const detail::Stretch* begin, const detail::Stretch* end, const detail::Slab& slab,
-                          std::int32_t y, const Mark& mark) {
-    const std::size_t column = slab.find(y);
-    const bool any = column < slab.columns.size();
-    const detail::Stretch* other = any ? slab.begin_of(column) : nullptr;
-    const detail::Stretch* const other_end = any ? slab.end_of(column) : nullptr;
-    for (; begin != end; ++begin)
-      if (begin->black) for_each_gap(begin->first, begin->last, other, other_end, mark);
-  }
-
-  // Whether a brick that is not explicit is black.
-  bool is_black(std::uint64_t number) const {
-    const Cube cube = curve::cube(order_, number << 6, 2);
-    const std::int64_t index = std::int64_t{cube.z >> 2} - slabs_.first;
-    if (index < 0 || index >= static_cast<std::int64_t>(slabs_.slabs.size())) return false;
-    const detail::Slab& slab = slabs_.slabs[static_cast<std::size_t>(index)];
-    const std::size_t column = slab.find(cube.y >> 2);
-    if (column == slab.columns.size()) return false;
-    const std::int32_t x = cube.x >> 2;
-    const detail::Stretch* const end = slab.end_of(column);
-    const detail::Stretch* const at =
-        std::partition_point(slab.begin_of(column), end, [x](const detail::Stretch& s) { return s.last <= x; });
-    return at != end && at->first <= x && at->black;
-  }
-
-  bool gap_behind(std::size_t i) const {
-    const std::uint64_t next = bricks_[i].number + 1;
-    const bool gap = i + 1 < bricks_.size() ? bricks_[i + 1].number != next : next >> 3 * (order_ - 2) == 0;
-    return gap && is_black(next);
-  }
-
-  const detail::Slabs& slabs_;
-  const int order_;          // of the curve of voxels
-  const std::int32_t side_;  // of the universe in bricks
-  std::vector<ExplicitBrick> bricks_;
-  std::vector<std::uint8_t> gaps_;
-};
-
-// A node is the range of explicit bricks in it.
-struct ExplicitProducer {
-  struct Task {
-    std::size_t low, high;  // explicit bricks [low, high)
-    std::uint64_t first;    // number of the node's first brick
-    std::uint8_t table;     // of the curve in the node
-  };
-  const Explicit& source;
-
-  Task root() const { return {0, source.bricks().size(), 0, 0}; }
-  Colour classify(const Task& task, const Cube&) const {
-    return task.low == task.high ? source.gap_before(task.low) : Colour::gray;
-  }
-  Task child(const Task& task, const Cube& cube, int octant) const {
-    const curve::Step digit = curve::kDigits[task.table][static_cast<std::size_t>(octant)];
-    const std::uint64_t size = std::uint64_t{1} << 3 * (cube.level - 2);
-    const std::uint64_t first = task.first + digit.octant * size;
-    return {lower_bound(task, first), lower_bound(task, first + size), first, digit.table};
-  }
-  std::uint64_t brick(const Task& task, const Cube&) const { return source.bricks()[task.low].bits; }
-
- private:
-  std::size_t lower_bound(const Task& task, std::uint64_t number) const {
-    const auto begin = source.bricks().begin();
-    return static_cast<std::size_t>(std::lower_bound(begin + static_cast<std::ptrdiff_t>(task.low),
-                                                     begin + static_cast<std::ptrdiff_t>(task.high),
-                                                     ExplicitBrick{number, 0}) -
-                                    begin);
-  }
-};
 
 }  // namespace
 
 Octree octree_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placement, MeshRule rule, const Work& work) {
-  const bool touched = rule == MeshRule::touched;
   const detail::GridMesh grid = detail::grid_mesh(mesh, placement);
-  const auto inside = [&] {
-    const detail::Slabs slabs = detail::slabs_of(grid, placement.frame, detail::part_of(work, 0, touched ? 0.3 : 0.6));
-    const Explicit bricks(slabs, grid.depth, detail::part_of(work, touched ? 0.3 : 0.6, touched ? 0.4 : 0.8));
-    return detail::produce(ExplicitProducer{bricks}, grid.depth, placement.frame,
-                           detail::part_of(work, touched ? 0.4 : 0.8, touched ? 0.5 : 1));
-  }();
-  return touched ? detail::with_touched(inside, grid, detail::part_of(work, 0.5, 1)) : inside;
+  detail::require_closed(grid.report(false), true);
+  const Work part = inside_part(work, rule);
+  const detail::Slabs slabs = detail::slabs_of(grid, {}, detail::part_of(part, 0, 0.6));
+  detail::require_simple(slabs.windings, grid.depth, placement.frame);
+  const Octree inside =
+      detail::octree_of_columns(slabs, grid.depth, placement.frame, false, detail::part_of(part, 0.6, 1));
+  return with_surface(inside, grid, rule, work);
+}
+
+MeshSolid solid_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placement, const MeshOptions& options,
+                          const Work& work) {
+  detail::GridMesh grid = detail::grid_mesh(mesh, placement);
+  MeshSolid solid;
+  solid.found = grid.report(true);
+  solid.found.triangles = mesh.triangles.size();
+  solid.found.degenerate_triangles = mesh.triangles.size() - grid.triangles.size();
+  for (const detail::Triangle& t : grid.triangles) {
+    bool flat = true;
+    for (std::size_t i = 0; i < 3; ++i)
+      flat = flat && detail::normal(grid.vertices[t[0]], grid.vertices[t[1]], grid.vertices[t[2]], i) == 0;
+    solid.found.degenerate_triangles += flat;
+  }
+  const Work part = inside_part(work, options.rule);
+  const bool parity = options.inside == Inside::parity;
+  if (parity) detail::require_closed(solid.found, false);
+
+  // What bounds a solid as it is needs no more than its columns.
+  if (parity || (solid.found.closed() && solid.found.misoriented_edges == 0)) {
+    const detail::InsideRule rule{parity ? detail::InsideRule::Kind::odd : detail::InsideRule::Kind::not_zero, 0};
+    const detail::Slabs slabs = detail::slabs_of(grid, rule, detail::part_of(part, 0, 0.5));
+    solid.overlaps = slabs.windings.flaw().columns > 0;
+    if (parity || !solid.overlaps) {
+      const Octree inside =
+          detail::octree_of_columns(slabs, grid.depth, placement.frame, false, detail::part_of(part, 0.5, 1));
+      solid.inside = options.inside == Inside::winding ? Inside::winding : Inside::parity;
+      solid.octree = with_surface(inside, grid, options.rule, work);
+      return solid;
+    }
+  }
+  const detail::Orientation orientation = detail::orient(grid);
+  solid.inside = Inside::winding;
+  solid.turned_triangles = orientation.turned;
+  solid.one_sided_parts = orientation.one_sided;
+  const detail::WindingSolid inside = detail::winding_solid(grid, placement.frame, part);
+  solid.holes = inside.holes;
+  solid.overlaps = inside.overlaps;
+  solid.octree = with_surface(inside.octree, grid, options.rule, work);
+  return solid;
 }
 
 }  // namespace blackleaf

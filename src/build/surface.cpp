@@ -3,11 +3,32 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "blackleaf/error.h"
 
 namespace blackleaf::detail {
+namespace {
+
+// Sets that are united, named by one of their members.
+class Partition {
+ public:
+  explicit Partition(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
+    }
+    return i;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) { parent_[root(b)] = root(a); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
 
 void require_sound(const TriangleMesh& mesh) {
   if (mesh.triangles.empty())
@@ -46,42 +67,28 @@ std::vector<std::uint32_t> first_equal(const std::vector<std::array<std::uint64_
   return first;
 }
 
-EdgeCounts count_edges(const std::vector<Triangle>& triangles, std::size_t vertices) {
-  // Buckets by the smaller end (counting sort), then each bucket, a handful of edges, by the larger.
-  struct Use {
-    std::uint32_t other;
-    std::int32_t direction;  // +1: passed from the smaller end to the larger
-  };
-  std::vector<std::uint64_t> end(vertices + 1, 0);
-  for (const Triangle& t : triangles)
-    for (std::size_t i = 0; i < 3; ++i) ++end[std::min(t[i], t[(i + 1) % 3]) + std::size_t{1}];
-  for (std::size_t v = 0; v < vertices; ++v) end[v + 1] += end[v];
-  std::vector<Use> uses(end[vertices]);
-  for (const Triangle& t : triangles)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = t[i], to = t[(i + 1) % 3];
-      uses[end[std::min(from, to)]++] = {std::max(from, to), from < to ? 1 : -1};
-    }
-  EdgeCounts counts;
-  std::uint64_t begin = 0;
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const auto first = uses.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = uses.begin() + static_cast<std::ptrdiff_t>(end[v]);
-    std::sort(first, last, [](const Use& a, const Use& b) { return a.other < b.other; });
-    for (auto use = first; use != last;) {
-      std::int64_t passes = 0, balance = 0;
-      const std::uint32_t other = use->other;
-      for (; use != last && use->other == other; ++use) {
-        ++passes;
-        balance += use->direction;
-      }
-      counts.open += passes % 2 != 0;
-      counts.non_manifold += passes > 2;
-      counts.misoriented += balance != 0;
-    }
-    begin = end[v];
+MeshReport report_of(const std::vector<Triangle>& triangles, std::size_t vertices, bool components) {
+  MeshReport report;
+  for_each_edge(triangles, vertices, [&](std::uint32_t, std::span<const EdgeUse> uses) {
+    std::int64_t balance = 0;
+    for (const EdgeUse& use : uses) balance += use.direction;
+    report.open_edges += uses.size() % 2 != 0;
+    report.non_manifold_edges += uses.size() > 2;
+    report.misoriented_edges += balance != 0;
+  });
+  if (!components) return report;
+  Partition parts(vertices);
+  for (const Triangle& t : triangles) {
+    parts.unite(t[0], t[1]);
+    parts.unite(t[0], t[2]);
   }
-  return counts;
+  std::vector<std::uint8_t> seen(vertices, 0);
+  for (const Triangle& t : triangles) {
+    const std::uint32_t root = parts.root(t[0]);
+    report.components += !seen[root];
+    seen[root] = 1;
+  }
+  return report;
 }
 
 }  // namespace blackleaf::detail
