@@ -3,22 +3,17 @@
 #include <algorithm>
 #include <limits>
 
-#include "blackleaf/error.h"
-
 namespace blackleaf::detail {
 namespace {
 
-std::uint32_t mean_of(const std::vector<std::uint32_t>& loop, std::vector<GridPoint>& vertices) {
-  std::array<Wide, 3> sum{};
-  for (const std::uint32_t v : loop)
-    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += vertices[v][axis];
-  if (vertices.size() >= std::numeric_limits<std::uint32_t>::max())
-    throw Error(ErrorCode::bad_input, "the mesh has too many vertices and holes", "split it");
-  GridPoint mean{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    mean[axis] = static_cast<std::int64_t>(sum[axis] / static_cast<std::int64_t>(loop.size()));
-  vertices.push_back(mean);
-  return static_cast<std::uint32_t>(vertices.size() - 1);
+// Closes the loop that goes along rim[first..last] and back by the chord.
+void close(const std::vector<std::uint32_t>& rim, std::size_t first, std::size_t last,
+           std::vector<Triangle>& triangles) {
+  if (last - first < 2) return;
+  const std::size_t middle = first + (last - first) / 2;
+  triangles.push_back({rim[last], rim[middle], rim[first]});
+  close(rim, first, middle, triangles);
+  close(rim, middle, last, triangles);
 }
 
 }  // namespace
@@ -43,7 +38,7 @@ std::vector<std::vector<DirectedEdge>> boundaries(const std::vector<Triangle>& t
   return result;
 }
 
-Caps caps_of(std::vector<DirectedEdge> boundary, std::vector<GridPoint>& vertices) {
+Caps caps_of(std::vector<DirectedEdge> boundary) {
   Caps caps;
   std::sort(boundary.begin(), boundary.end());
   // The vertices of the boundary by their place in it: the edges that leave one stand together.
@@ -62,22 +57,15 @@ Caps caps_of(std::vector<DirectedEdge> boundary, std::vector<GridPoint>& vertice
   constexpr std::size_t kOff = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> on_path(names.size(), kOff);  // where on the path, or off it
   std::vector<std::size_t> path;
-  std::vector<std::uint32_t> loop;
-  const auto close = [&](std::size_t from) {
-    loop.clear();
+  const auto take_off = [&](std::size_t from) {
+    const std::size_t begin = caps.rims.size();
     for (std::size_t i = from; i < path.size(); ++i) {
-      loop.push_back(names[path[i]]);
+      caps.rims.push_back(names[path[i]]);
       on_path[path[i]] = kOff;
     }
     path.resize(from);
-    ++caps.loops;
-    if (loop.size() == 3) {
-      caps.triangles.push_back({loop[2], loop[1], loop[0]});
-      return;
-    }
-    const std::uint32_t apex = mean_of(loop, vertices);
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      caps.triangles.push_back({loop[(i + 1) % loop.size()], loop[i], apex});
+    caps.ends.push_back(caps.rims.size());
+    close(caps.rims, begin, caps.rims.size() - 1, caps.triangles);
   };
   // As many edges enter a vertex as leave it, so a walk along unused edges only ever stops where it began; whenever it
   // comes back to a vertex of its path, what lies between is a loop.
@@ -88,7 +76,7 @@ Caps caps_of(std::vector<DirectedEdge> boundary, std::vector<GridPoint>& vertice
         on_path[at] = path.size();
         path.push_back(at);
         at = place(boundary[next[at]++][1]);
-        if (on_path[at] != kOff) close(on_path[at]);
+        if (on_path[at] != kOff) take_off(on_path[at]);
       } while (!path.empty());
     }
   }

@@ -161,7 +161,8 @@ double twice_area(const std::vector<GridPoint>& vertices, const Triangle& t) {
   return std::sqrt(square);
 }
 
-void measure(Part& part, const GridMesh& mesh, const std::vector<GridPoint>& vertices) {
+void measure(Part& part, const GridMesh& mesh) {
+  const std::vector<GridPoint>& vertices = mesh.vertices;
   const GridPoint& origin = vertices[mesh.triangles[part.triangles.front()][0]];
   part.low = part.high = origin;
   for (const std::uint32_t i : part.triangles) {
@@ -205,9 +206,8 @@ void turn_over(Part& part, GridMesh& mesh) {
 // Finds around which points, the centroids of triangles of doubtful parts, larger parts wind.
 class Nesting {
  public:
-  Nesting(const GridMesh& mesh, const std::vector<GridPoint>& vertices, const std::vector<Part>& parts,
-          const std::vector<std::uint32_t>& rank)
-      : mesh_(mesh), vertices_(vertices), parts_(parts), rank_(rank) {}
+  Nesting(const GridMesh& mesh, const std::vector<Part>& parts, const std::vector<std::uint32_t>& rank)
+      : mesh_(mesh), vertices_(mesh.vertices), parts_(parts), rank_(rank) {}
 
   void add_points(std::uint32_t part) {
     for (const std::uint32_t i : parts_[part].triangles) {
@@ -298,7 +298,7 @@ bool within(const Part& inner, const Part& outer) {
   return true;
 }
 
-void face_outward(std::vector<Part>& parts, GridMesh& mesh, const std::vector<GridPoint>& vertices) {
+void face_outward(std::vector<Part>& parts, GridMesh& mesh) {
   // Larger ones first.
   std::vector<std::uint32_t> order(parts.size()), rank(parts.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -307,7 +307,7 @@ void face_outward(std::vector<Part>& parts, GridMesh& mesh, const std::vector<Gr
   for (std::uint32_t i = 0; i < order.size(); ++i) rank[order[i]] = i;
 
   const auto doubtful = [&](const Part& part) { return part.has_inside() && (part.mended || part.volume.sign() < 0); };
-  Nesting nesting(mesh, vertices, parts, rank);
+  Nesting nesting(mesh, parts, rank);
   bool any = false;
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const Part& part = parts[order[i]];
@@ -338,15 +338,14 @@ Orientation orient(GridMesh& mesh) {
   std::vector<std::uint32_t> part_of(mesh.triangles.size());
   for (std::uint32_t k = 0; k < parts.size(); ++k)
     for (const std::uint32_t i : parts[k].triangles) part_of[i] = k;
-  std::vector<GridPoint> vertices = mesh.vertices;  // and those of the parts' caps
-  const auto holes = boundaries(mesh.triangles, vertices.size(), part_of, parts.size());
-  for (std::size_t k = 0; k < parts.size(); ++k) parts[k].caps = caps_of(holes[k], vertices).triangles;
+  const auto holes = boundaries(mesh.triangles, mesh.vertices.size(), part_of, parts.size());
+  for (std::size_t k = 0; k < parts.size(); ++k) parts[k].caps = caps_of(holes[k]).triangles;
 
-  for (Part& part : parts) measure(part, mesh, vertices);
+  for (Part& part : parts) measure(part, mesh);
   const bool inside_out = faces_inward(parts, mesh);
   if (inside_out)
     for (Part& part : parts) turn_over(part, mesh);
-  face_outward(parts, mesh, vertices);
+  face_outward(parts, mesh);
 
   for (std::size_t i = 0; i < given.size(); ++i) result.turned += (mesh.triangles[i] != given[i]) != inside_out;
   for (const Part& part : parts) result.one_sided += part.one_sided;

@@ -30,7 +30,7 @@ int side_moved_to(const std::array<Wide, 3>& n) {
 
 }  // namespace
 
-Turns solid_angle(const GridPoint& p, const GridTriangle& t) {
+void QuickSum::add(const GridPoint& p, const GridTriangle& t) {
   const GridPoint a = minus(t.a, p), b = minus(t.b, p), c = minus(t.c, p);
   const double ax = static_cast<double>(a[0]), ay = static_cast<double>(a[1]), az = static_cast<double>(a[2]);
   const double bx = static_cast<double>(b[0]), by = static_cast<double>(b[1]), bz = static_cast<double>(b[2]);
@@ -47,16 +47,43 @@ Turns solid_angle(const GridPoint& p, const GridTriangle& t) {
     const std::array<Wide, 3> n = normal_of(t);
     const Wide exact = determinant(n, a);
     if (exact == 0) {
-      if (re > rounding) return {0, 0};
-      if (re < -rounding) return {0.5 * side_moved_to(n), 0};
-      return {0, 0.5};
+      if (re > rounding) return;
+      if (re < -rounding)
+        value_ += 0.5 * side_moved_to(n);
+      else
+        error_ += 0.5;
+      return;
     }
     im = static_cast<double>(exact);
   }
   // The sign of im is right now, so the argument is on the right side of the cut along the negative numbers.
-  const double length = std::sqrt(re * re + im * im);
-  const double angle = length > 4 * rounding ? 2 * rounding / length + 0x1p-50 : kPi;
-  return {std::atan2(im, re) / (2 * kPi), std::min(0.5, angle / (2 * kPi))};
+  const double length = std::abs(re) + std::abs(im);  // at most twice too long, so an eighth stands for a quarter
+  if (length <= 16 * rounding) {
+    error_ += 0.5;
+    return;
+  }
+  error_ += rounding / length + 0x1p-50;
+  const bool was_upper = im_ > 0 || (im_ == 0 && re_ < 0);
+  const double scale = 1 / length, factor_re = re * scale, factor_im = im * scale;
+  const double product_re = re_ * factor_re - im_ * factor_im;
+  im_ = re_ * factor_im + im_ * factor_re;
+  re_ = product_re;
+  // The argument moved by less than pi, up if im > 0. Where it is near 0 or pi on both sides of the product, the two
+  // terms of its imaginary part have one sign, so rounding never carries it to the other end of its range.
+  const bool is_upper = im_ > 0 || (im_ == 0 && re_ < 0);
+  if (im > 0 && was_upper && !is_upper) ++rounds_;
+  if (im < 0 && !was_upper && is_upper) --rounds_;
+  const double size_now = std::max(std::abs(re_), std::abs(im_));
+  if (size_now < 0x1p-300) {  // no factor is longer than 1
+    const int exponent = -std::ilogb(size_now);
+    re_ = std::ldexp(re_, exponent);
+    im_ = std::ldexp(im_, exponent);
+  }
+}
+
+Turns QuickSum::turns() const {
+  if (im_ == 0 && re_ > 0) return {value_ + rounds_, error_};
+  return {value_ + rounds_ + std::atan2(im_, re_) / (2 * kPi), error_ + 0x1p-48 * std::abs(value_) + 0x1p-50};
 }
 
 void AngleSum::add(const GridPoint& p, const GridTriangle& t) {

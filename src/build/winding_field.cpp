@@ -9,9 +9,6 @@ namespace {
 
 constexpr double kPi = 3.141592653589793;
 constexpr std::uint32_t kLeaf = 4;  // triangles of a ball that is not divided
-// Added to errors, for the roundings of positions, radii and dipoles and of the arcus tangent, whichever library
-// computes it: their true size is below 2^-40.
-constexpr double kRounding = 0x1p-30;
 
 double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -20,8 +17,14 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 
 }  // namespace
 
+Levels levels_of(const Turns& w, double change) {
+  const double error = w.error + change > 0 ? w.error + change + kFieldRounding : 0;
+  return {static_cast<int>(std::floor(w.value - error + 0.5)) + 1,
+          static_cast<int>(std::floor(w.value + error + 0.5)) + 1};
+}
+
 WindingField::WindingField(const GridMesh& mesh, const std::vector<Triangle>& triangles)
-    : depth_(mesh.depth), fraction_bits_(mesh.fraction_bits()) {
+    : fraction_bits_(mesh.fraction_bits()), voxel_(std::ldexp(1.0, -mesh.fraction_bits())) {
   std::vector<std::array<double, 3>> centroids;
   for (const Triangle& t : triangles) {
     const GridTriangle triangle{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
@@ -48,6 +51,10 @@ WindingField::WindingField(const GridMesh& mesh, const std::vector<Triangle>& tr
     ball.second = second;
   }
   area_ = balls_.front().area;
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    const Ball ball = ball_of(i, i + 1);
+    extents_.push_back({ball.centre, ball.radius, ball.area});
+  }
 }
 
 std::uint32_t WindingField::build(std::uint32_t begin, std::uint32_t end, std::vector<std::uint32_t>& order,
@@ -80,12 +87,6 @@ std::uint32_t WindingField::build(std::uint32_t begin, std::uint32_t end, std::v
 }
 
 WindingField::Ball WindingField::ball_of(std::uint32_t begin, std::uint32_t end) const {
-  const auto voxels = [&](const GridPoint& p) {
-    std::array<double, 3> result{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      result[axis] = std::ldexp(static_cast<double>(p[axis]), -fraction_bits_);
-    return result;
-  };
   Ball ball;
   ball.begin = begin;
   ball.end = end;
@@ -120,108 +121,152 @@ WindingField::Ball WindingField::ball_of(std::uint32_t begin, std::uint32_t end)
         ball.moment[row][column] += n * ((a[column] + b[column] + c[column]) / 3 - ball.centre[column]);
     }
   }
-  ball.length =
-      std::sqrt(ball.vector[0] * ball.vector[0] + ball.vector[1] * ball.vector[1] + ball.vector[2] * ball.vector[2]);
   return ball;
 }
 
-Turns WindingField::far(const Ball& ball, const std::array<double, 3>& p, double h) const {
+std::array<double, 3> WindingField::voxels(const GridPoint& p) const {
+  std::array<double, 3> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = static_cast<double>(p[axis]) * voxel_;
+  return result;
+}
+
+Turns WindingField::far(const Ball& ball, const std::array<double, 3>& p, double h) {
   const std::array<double, 3> d = {ball.centre[0] - p[0], ball.centre[1] - p[1], ball.centre[2] - p[2]};
   const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], r = std::sqrt(square);
   const double gap = r - ball.radius - h - 0x1p-20;
   if (gap <= 0) return {0, std::numeric_limits<double>::infinity()};
-  const double cube = square * r;
   double along = 0;  // d.M d
   for (std::size_t i = 0; i < 3; ++i)
     along += d[i] * (ball.moment[i][0] * d[0] + ball.moment[i][1] * d[1] + ball.moment[i][2] * d[2]);
   const double trace = ball.moment[0][0] + ball.moment[1][1] + ball.moment[2][2];
   const double value =
       ball.vector[0] * d[0] + ball.vector[1] * d[1] + ball.vector[2] * d[2] + trace - 3 * along / square;
-  const double reach = (ball.radius + h) / gap;
-  // The slope of M's part is a term of second order, as is the change of V's part's slope: both are in the first sum.
-  const double error = 3 * ball.area * reach * reach / (gap * gap) + 2 * ball.length * h / cube;
-  return {value / (4 * kPi * cube), error / (4 * kPi)};
+  const double reach = ball.radius + h, near = gap * gap;
+  return {value / (4 * kPi * square * r), 3 * ball.area * reach * reach / (4 * kPi * near * near)};
 }
 
-Turns WindingField::sum(const GridPoint& p, double tolerance) const {
-  std::array<double, 3> at{};
-  for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = std::ldexp(static_cast<double>(p[axis]), -fraction_bits_);
+std::array<double, 3> WindingField::gradient(const Ball& ball, const std::array<double, 3>& p) {
+  const std::array<double, 3> d = {ball.centre[0] - p[0], ball.centre[1] - p[1], ball.centre[2] - p[2]};
+  const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  const double along = ball.vector[0] * d[0] + ball.vector[1] * d[1] + ball.vector[2] * d[2];
+  const double scale = 1 / (4 * kPi * square * std::sqrt(square));
+  std::array<double, 3> result{};
+  for (std::size_t i = 0; i < 3; ++i) result[i] = scale * (3 * along * d[i] / square - ball.vector[i]);
+  return result;
+}
+
+WindingField::Slope WindingField::slope(const GridTriangle& t, const std::array<double, 3>& p) const {
+  const std::array<std::array<double, 3>, 3> corners = {voxels(t.a), voxels(t.b), voxels(t.c)};
+  std::array<std::array<double, 3>, 3> to{};
+  std::array<double, 3> length{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) to[i][axis] = corners[i][axis] - p[axis];
+    length[i] = std::sqrt(to[i][0] * to[i][0] + to[i][1] * to[i][1] + to[i][2] * to[i][2]);
+  }
+  // The law of Biot and Savart for each edge from a to b: a x b (|a| + |b|) / (|a| |b| (|a| |b| + a.b)).
+  Slope result{{}, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::array<double, 3>&a = to[i], &b = to[(i + 1) % 3];
+    const double sizes = length[i] * length[(i + 1) % 3];
+    const double opening = sizes + a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const double scale = (length[i] + length[(i + 1) % 3]) / (4 * kPi * sizes * opening);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
+      result.gradient[axis] += scale * (a[j] * b[k] - a[k] * b[j]);
+    }
+    // a x b and a.b are off by a few roundings of |a| |b|; |a x b|^2 <= 2 |a| |b| (|a| |b| + a.b).
+    result.error += 0x1p-48 * scale * sizes * (1 + std::sqrt(2 * sizes / opening));
+  }
+  return result;
+}
+
+template <class TakeFar, class TakeNear>
+void WindingField::visit(const std::array<double, 3>& p, double h, double tolerance, const TakeFar& take_far,
+                         const TakeNear& take_near) const {
+  if (triangles_.empty()) return;
   // If the error of each ball is at most its share of the tolerance, by area, all make no more than that; a small one
   // may be larger, as few balls come near the limit. What counts is their sum.
   const double share = tolerance / area_;
-  Turns sum;
   std::array<std::uint32_t, 64> stack;  // halving 2^32 triangles makes at most 32 levels, of which each leaves one here
   std::size_t size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const std::uint32_t index = stack[--size];
     const Ball& ball = balls_[index];
-    const Turns turns = far(ball, at, 0);
-    if (turns.error <= std::max(share * ball.area, tolerance / 64)) {
-      sum.value += turns.value;
-      sum.error += turns.error + 0x1p-40 * std::abs(turns.value);
-    } else if (ball.second != 0) {
+    if (tolerance > 0) {
+      const Turns turns = far(ball, p, h);
+      if (turns.error <= std::max(share * ball.area, tolerance / 64)) {
+        take_far(ball, turns);
+        continue;
+      }
+    }
+    if (ball.second != 0) {
       stack[size++] = ball.second;
       stack[size++] = index + 1;
     } else {
-      for (std::uint32_t i = ball.begin; i < ball.end; ++i) {
-        const Turns one = solid_angle(p, triangles_[i]);
-        sum.value += one.value;
-        sum.error += one.error + 0x1p-48 * std::abs(one.value);
-      }
+      for (std::uint32_t i = ball.begin; i < ball.end; ++i) take_near(i);
     }
   }
-  return sum;
 }
 
-int WindingField::level(std::int32_t x, std::int32_t y, std::int32_t z) const {
-  if (triangles_.empty()) return 1;
-  const int half = fraction_bits_ - 1;
-  const GridPoint p = {(2 * std::int64_t{x} + 1) << half, (2 * std::int64_t{y} + 1) << half,
-                       (2 * std::int64_t{z} + 1) << half};
-  for (const double tolerance : {0x1p-2, 0x1p-5, 0x1p-9, 0x1p-14, 0.0}) {
-    const Turns w = sum(p, tolerance);
-    const double error = w.error + kRounding;
-    const double low = std::floor(w.value - error + 0.5), high = std::floor(w.value + error + 0.5);
-    if (low == high) return static_cast<int>(low) + 1;
+Turns WindingField::sum(const GridPoint& p, double tolerance) const {
+  QuickSum sum;
+  visit(
+      voxels(p), 0, tolerance, [&](const Ball&, const Turns& turns) { sum.add(turns); },
+      [&](std::uint32_t i) { sum.add(p, triangles_[i]); });
+  return sum.turns();
+}
+
+WindingField::Around WindingField::around(const GridPoint& p, double h, double tolerance) const {
+  Around result;
+  result.centre = voxels(p);
+  QuickSum middle;  // of the triangles that are taken as linear one by one
+  visit(
+      result.centre, h, tolerance,
+      [&](const Ball& ball, const Turns& turns) {
+        result.at_centre.value += turns.value;
+        result.at_centre.error += turns.error + kFieldRounding * std::abs(turns.value);
+        const std::array<double, 3> slope = gradient(ball, result.centre);
+        for (std::size_t i = 0; i < 3; ++i) result.gradient[i] += slope[i];
+      },
+      [&](std::uint32_t i) {
+        // A triangle's own linear function leaves out half the second derivative of n.K over its area.
+        const GridTriangle& t = triangles_[i];
+        const Extent& extent = extents_[i];
+        const double gap = distance(extent.centre, result.centre) - extent.radius - h - 0x1p-20;
+        const double bend = 3 * extent.area * h * h / (4 * kPi * gap * gap * gap * gap);
+        const double allowed = std::max(tolerance * extent.area / area_, tolerance / 256);
+        if (!(gap > 0 && bend < allowed)) return result.near.push_back(t);
+        const Slope slope = this->slope(t, result.centre);
+        if (!(h * slope.error < 0x1p-30)) return result.near.push_back(t);
+        middle.add(p, t);
+        middle.add({0, bend + h * slope.error});
+        for (std::size_t axis = 0; axis < 3; ++axis) result.gradient[axis] += slope.gradient[axis];
+      });
+  const Turns turns = middle.turns();
+  result.at_centre.value += turns.value;
+  result.at_centre.error += turns.error + kFieldRounding;
+  return result;
+}
+
+Turns WindingField::sum(const Around& around, const GridPoint& p) const {
+  const std::array<double, 3> at = voxels(p);
+  double far = around.at_centre.value;
+  for (std::size_t i = 0; i < 3; ++i) far += around.gradient[i] * (at[i] - around.centre[i]);
+  QuickSum sum;
+  sum.add({far, around.at_centre.error});
+  for (const GridTriangle& t : around.near) sum.add(p, t);
+  return sum.turns();
+}
+
+int WindingField::level(const GridPoint& p) const {
+  for (const double tolerance : {0x1p-5, 0x1p-9, 0x1p-14, 0.0}) {
+    const Levels levels = levels_of(sum(p, tolerance), 0);
+    if (levels.low == levels.high) return levels.low;
   }
   AngleSum exact;
   for (const GridTriangle& t : triangles_) exact.add(p, t);
   return exact.above_half();
-}
-
-Levels WindingField::levels(const Cube& cube, const Levels& all) const {
-  if (triangles_.empty()) return {1, 1};
-  // The centres lie in the cube less half a voxel on each side.
-  const double half = 0.5 * cube.side();
-  const std::array<double, 3> at = {cube.x + half, cube.y + half, cube.z + half};
-  const double h = (half - 0.5) * 1.7320508075688774;  // the next double above the root of 3
-  constexpr double kTolerance = 0.25;
-  const double share = kTolerance / area_;
-  Turns sum;
-  std::array<std::uint32_t, 64> stack;
-  std::size_t size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const std::uint32_t index = stack[--size];
-    const Ball& ball = balls_[index];
-    const Turns turns = far(ball, at, h);
-    if (turns.error <= std::max(share * ball.area, kTolerance / 64) ||
-        (ball.second == 0 && turns.error <= 0.5 * (ball.end - ball.begin))) {
-      sum.value += turns.value;
-      sum.error += turns.error + 0x1p-40 * std::abs(turns.value);
-    } else if (ball.second != 0) {
-      stack[size++] = ball.second;
-      stack[size++] = index + 1;
-    } else {
-      sum.error += 0.5 * (ball.end - ball.begin);
-    }
-    if (2 * sum.error > all.high - all.low) return all;  // wider than all that is asked for
-  }
-  const double error = sum.error + kRounding;
-  const double low = std::floor(sum.value - error + 0.5) + 1, high = std::floor(sum.value + error + 0.5) + 1;
-  return {static_cast<int>(std::clamp<double>(low, all.low, all.high)),
-          static_cast<int>(std::clamp<double>(high, all.low, all.high))};
 }
 
 }  // namespace blackleaf::detail

@@ -196,7 +196,7 @@ TEST_F(BadInput, OptionsGivenTwice) {
 TEST_F(BadInput, MessagesNameWhatToMend) {
   make_stl("s.stl", {0, 0, 0}, {1, 1, 1});
   make_stl("open.stl", {0, 0, 0}, {1, 1, 1}, true);
-  refused({"build", "open.stl", "-o", "o.octree"}, "blackleaf: open.stl: ");
+  refused({"build", "open.stl", "--inside", "parity", "-o", "o.octree"}, "blackleaf: open.stl: ");
   refused({"build", "s.stl", "--voxel-size", "0.01", "--depth", "4", "-o", "o.octree"}, "blackleaf: s.stl: ");
   refused({"build", "s.stl", "--fit", "1e-300", "-o", "o.octree"}, "--fit is 1e-300, which is less than any voxel");
   refused({"draw", "b.octree", "--view", "1,2,3", "--size", "10x10", "-o", "o.svg"},

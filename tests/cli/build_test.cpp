@@ -208,9 +208,20 @@ TEST_F(BuildCommand, OptionsOutOfRangeAreRefused) {
   refused({"build", "v.nrrd", "-o", "b.octree", "--label", "nan"}, "--label");
 }
 
+TEST_F(BuildCommand, OpenMeshesAreBuiltWithAWarning) {
+  make_stl("open.stl", {0, 0, 0}, {1, 1, 1}, true);
+  const auto result = run({"build", "open.stl", "-o", "b.octree", "--depth", "4"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(lines(result.err), 1u);
+  EXPECT_NE(result.err.find("open.stl: 3 open edges, 1 component; inside is where the winding number is above 1/2"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(BuildCommand, BadMeshesAreRefused) {
   make_stl("open.stl", {0, 0, 0}, {1, 1, 1}, true);
-  refused({"build", "open.stl", "-o", "b.octree"}, "open");
+  refused({"build", "open.stl", "--inside", "parity", "-o", "b.octree"}, "not closed: it has 3 open edges");
+  refused({"build", "open.stl", "--inside", "maybe", "-o", "b.octree"}, "automatic, parity or winding");
   make_stl("flat.stl", {0, 0, 0}, {0, 0, 0});
   refused({"build", "flat.stl", "-o", "b.octree"}, "");
   write("text.stl", "this is not a mesh\n");
