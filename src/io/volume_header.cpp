@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 // Sizes as the header tells them: at least one voxel along each dimension.
 void check_sizes(const fs::path& path, const std::string& text) {
   const std::vector<std::string_view> sizes = words(text);
-  for (const std::string& size : sizes) {
+  for (const std::string_view size : sizes) {
     const auto value = number<std::int64_t>(size);
     if (!value)
       refuse(path, fmt::format("its header has a size of {}, which is no whole number of voxels", shown(size)),
