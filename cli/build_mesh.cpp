@@ -138,7 +138,13 @@ Octree build_mesh(Session& session, const BuildOptions& o, const std::optional<O
   const MeshSolid solid = session.stage("build", [&](const Work& work) {
     return naming(o.input, [&] { return solid_from_mesh(mesh, placement, options, work); });
   });
-  if (solid.octree.is_empty()) refuse_if_missed(o.input, mesh, placement);
+  if (solid.octree.is_empty()) {
+    refuse_if_missed(o.input, mesh, placement);
+    if (solid.found.closed() && solid.found.non_manifold_edges > 0)
+      session.warn(o.input +
+                   ": its surfaces cancel each other, as when every triangle is there a second time, turned " +
+                   "over; remove the doubles");
+  }
   if (const std::string line = faults(solid); !line.empty()) {
     facts["inside"] = solid.inside == Inside::parity ? "parity" : "winding";
     session.warn(o.input + ": " + line);

@@ -104,10 +104,10 @@ struct MeshSolid {
 /// solid angles of the triangles seen from its centre, over 4 pi (Jacobson et al. 2013). A centre on the surface counts
 /// as moved by an infinitesimal (e, e^2, e^3); w = 1/2 is white. For closed meshes w is an integer and found exactly.
 /// For open ones the holes are closed by caps: w is the exact winding number of the closed surface less that of the
-/// caps, which is bounded over whole nodes by a hierarchy of dipoles (Barill et al. 2018), summed in floating point
-/// with an error bound nearer to 1/2, and in double-double arithmetic where that is not enough; what that cannot tell
-/// from 1/2 (about 2^-90 times the number of cap triangles) counts as 1/2. So the answer depends on neither compiler
-/// nor threads, nor on the choice of caps.
+/// caps, which is bounded over whole nodes by the lengths and distances of the rims, summed by a hierarchy of dipoles
+/// (Barill et al. 2018) with an error bound nearer to 1/2, and in double-double arithmetic where that is not enough;
+/// what that cannot tell from 1/2 (about 2^-90 times the number of cap triangles) counts as 1/2. So the answer depends
+/// on neither compiler nor threads, nor on the choice of caps.
 ///
 /// MeshRule::touched adds every voxel whose closed cube meets a triangle. Throws as octree_from_mesh() does for meshes
 /// without triangles, with vertices that are not finite, or outside the universe. O(surface voxels log(surface voxels)
