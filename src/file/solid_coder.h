@@ -13,8 +13,8 @@ namespace blackleaf::detail {
 std::vector<std::uint8_t> encode_solid(const Node& node);
 
 /// The node of the given level that the bytes stand for, its words appended to `arrays` in the order of the curve that
-/// enters it with `table`. Throws Damage for bytes that encode_solid cannot have made. The octree takes at most some 1600
-/// times bytes.size(), and reading it a few times that.
+/// enters it with `table`. Throws Damage for bytes that encode_solid cannot have made. The octree takes at most some
+/// 1600 times bytes.size(), and reading it a few times that.
 Subtree decode_solid(std::span<const std::uint8_t> bytes, int level, unsigned table, NodeArrays& arrays);
 
 }  // namespace blackleaf::detail

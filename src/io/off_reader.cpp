@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
-#include "io/header_text.h"
 #include "io/file_text.h"
+#include "io/header_text.h"
 #include "io/polygon.h"
 
 namespace blackleaf::detail {

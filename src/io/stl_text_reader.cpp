@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "io/header_text.h"
 #include "io/file_text.h"
+#include "io/header_text.h"
 
 namespace blackleaf::detail {
 namespace {
