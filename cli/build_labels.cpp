@@ -26,7 +26,7 @@ LabelMap from_volume(Session& session, const BuildOptions& o, const std::optiona
   options.spacing = o.spacing;
   options.warn = [&](const std::string& what) { session.warn(what); };
   if (o.centre) facts["centre"] = true;
-  const LabelMap labels =
+  LabelMap labels =
       session.stage("build", [&](const Work& work) { return read_label_volume(o.input, options, work); });
   facts["depth"] = labels.depth();
   if (!like) return labels;
