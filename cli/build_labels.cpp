@@ -22,8 +22,12 @@ LabelMap from_volume(Session& session, const BuildOptions& o, const std::optiona
   }
   options.depth = like ? like->depth() : o.depth.value_or(0);
   options.centre = o.centre;
-  if (o.series) options.series = *o.series;
+  if (o.series) {
+    options.series = *o.series;
+    facts["series"] = *o.series;
+  }
   options.spacing = o.spacing;
+  if (o.spacing) facts["spacing"] = *o.spacing;
   options.warn = [&](const std::string& what) { session.warn(what); };
   if (o.centre) facts["centre"] = true;
   LabelMap labels =

@@ -21,7 +21,7 @@ struct Command {
 
 // In the order in which one meets them.
 constexpr std::array<Command, 10> kCommands = {{
-    {"build", "make the octree of a mesh, a volume or a run stream", run_build},
+    {"build", "make the octree of a mesh, volume, point cloud, silhouettes or run stream", run_build},
     {"info", "measure an octree: volume, surface, nodes, bounding box, ...", run_info},
     {"translate", "shift an octree by whole voxels, without loss", run_translate},
     {"move", "rotate and translate an octree", run_move},

@@ -24,7 +24,15 @@ class LabelVector {
   explicit LabelVector(const L* labels) { std::memcpy(&lanes_, labels, sizeof lanes_); }
 
   /// Zero in the bricks whose four labels are equal: each is compared with the next, the last with the first.
-  LabelVector neighbours() const { return LabelVector(lanes_ ^ __builtin_shuffle(lanes_, kTurned)); }
+  LabelVector neighbours() const {
+#if defined(__clang__)  // which has no shuffle by a vector, and finds the instruction by itself
+    Lanes next{};
+    for (std::size_t i = 0; i < 16 / sizeof(L); ++i) next[i] = lanes_[(i & ~std::size_t{3}) | ((i + 1) & 3)];
+#else
+    const Lanes next = __builtin_shuffle(lanes_, kTurned);
+#endif
+    return LabelVector(lanes_ ^ next);
+  }
   /// Sets bits where two vectors differ.
   void mark(const LabelVector& a, const LabelVector& b) { lanes_ |= a.lanes_ ^ b.lanes_; }
   /// True iff the four of a brick are zero.

@@ -24,6 +24,13 @@ struct Extent {
   double longest;
 };
 
+// Voxels have a volume: its size must be one of floating point too.
+void require_volume(double voxel_size, const std::string& why, const std::string& remedy) {
+  if (!std::isnormal(voxel_size * voxel_size * voxel_size))
+    throw Error(ErrorCode::bad_input, why + " makes voxels of side " + text(voxel_size) + ", beyond floating point",
+                remedy);
+}
+
 Extent extent_of(const TriangleMesh& mesh) {
   detail::require_sound(mesh);
   const Eigen::AlignedBox3d box = mesh.bounding_box();
@@ -62,6 +69,7 @@ MeshPlacement place_by_fraction(const TriangleMesh& mesh, int depth, double frac
   if (!std::isfinite(voxel_size) || !(voxel_size > 0))
     throw Error(ErrorCode::bad_argument, "fraction " + text(fraction) + " makes voxels too large for floating point",
                 "use a larger fraction");
+  require_volume(voxel_size, "a mesh " + text(extent.longest) + " units long", "scale the mesh");
   return centred(mesh, extent, depth, voxel_size);
 }
 
@@ -70,6 +78,7 @@ MeshPlacement place_by_voxel_size(const TriangleMesh& mesh, double voxel_size, i
   if (!(voxel_size > 0) || !std::isfinite(voxel_size))
     throw Error(ErrorCode::bad_argument, "voxel size " + text(voxel_size) + " is out of range",
                 "use a finite size above 0");
+  require_volume(voxel_size, "the voxel size", "give one nearer to the size of the mesh");
   const Extent extent = extent_of(mesh);
   const double voxels = extent.longest / voxel_size * (1 - kRounding);
   if (depth == 0)

@@ -54,6 +54,8 @@ void read_silhouette_image(const std::filesystem::path& path, Silhouette& silhou
   const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
   if (pixels >= std::uint64_t{1} << 28)
     refuse(fmt::format("has {} x {} pixels", image.width, image.height), "scale it down to less than 2^28 pixels");
+  // Sixteen bits are to be taken as eight are, by their values as they stand; libpng would have them linear in light.
+  image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   if (pixels > bytes.size() * kPixelsPerByte)
     refuse(fmt::format("tells of {} x {} pixels but has only {} bytes", image.width, image.height, bytes.size()),
            "the file was cut off, get it again");

@@ -89,6 +89,8 @@ Json parse(const std::string& text, const fs::path& path) {
     // "[json.exception.parse_error.101] parse error at line 1, column 5: ..."
     if (const auto at = why.find(": "); at != std::string_view::npos) why.remove_prefix(at + 2);
     refuse("JSON", 1 + static_cast<std::size_t>(std::count(text.begin(), end, '\n')), why);
+  } catch (const Json::out_of_range&) {
+    throw Error(ErrorCode::bad_input, path.string() + ": has a number beyond floating point", "mend it");
   }
   return {};
 }

@@ -26,14 +26,17 @@ class StlTextReader {
       for (const std::string_view word : words(line)) {
         if (coordinates_ < 3)
           take_coordinate(word);
-        else if (word == "solid" || word == "endsolid")
+        else if (word == "solid" || word == "endsolid") {
+          in_solid_ = word == "solid";
           break;  // a name follows
-        else
+        } else {
           take(word);
+        }
       }
     }
     if (coordinates_ < 3) refuse(name_, fmt::format("facet {} ends within a vertex", facet()), kCutOff);
     end_facet(kCutOff);
+    if (in_solid_) refuse(name_, "its last solid has no endsolid", kCutOff);
     if (mesh_.triangles.empty()) refuse(name_, "has no triangles", "give a surface, not points or lines");
     return std::move(mesh_);
   }
@@ -78,8 +81,9 @@ class StlTextReader {
   Bytes bytes_;
   const std::string& name_;
   TriangleMesh mesh_;
-  bool open_ = false;    // within a facet
-  int coordinates_ = 3;  // of the last vertex that have been read
+  bool in_solid_ = false;  // between solid and endsolid
+  bool open_ = false;      // within a facet
+  int coordinates_ = 3;    // of the last vertex that have been read
 };
 
 }  // namespace

@@ -107,7 +107,12 @@ TEST_F(MeshDamage, Stl) {
   const auto facet = [](const std::string& vertices) {
     return "facet normal 0 0 1\nouter loop\n" + vertices + "\nendloop\nendfacet\n";
   };
-  EXPECT_EQ(triangles("a.stl", "solid facet 7 vertex\r" + facet(corners) + "endsolid\nSOLID b\n" + facet(corners)), 2u);
+  EXPECT_EQ(triangles("a.stl",
+                      "solid facet 7 vertex\r" + facet(corners) + "endsolid\nSOLID b\n" + facet(corners) + "EndSolid"),
+            2u);
+  refuse("a.stl",
+         "solid a\n" + facet(corners) + "facet normal 0 0 1\n" + "outer loop\n" + corners + "endloop\nendfacet\n",
+         {"no endsolid", "cut off"});
   refuse("a.stl", "solid a\n" + facet(corners + "vertex 1 1 0\n") + "endsolid a\n",
          {"facet 0 has 4 vertices", "divide it into triangles"});
   refuse("a.stl", "solid a\n" + facet(corners) + facet(corners.substr(0, 26)) + "endsolid a\n",
@@ -121,7 +126,8 @@ TEST_F(MeshDamage, Stl) {
   refuse("a.stl", "solid a\n" + facet(corners.substr(0, 26) + "vertex 1 2 nan") + "endsolid a\n", {"'nan'", "finite"});
   refuse("a.stl", "solid a\n" + facet(corners.substr(0, 26) + "vertex 1 2 1e999") + "endsolid a\n", {"'1e999'"});
   refuse("a.stl", "solid a\nendsolid a\n", {"has no triangles"});
-  test::write_file(folder_ / "a.stl", "SOLID a\n" + facet("VERTEX 0.1 -2E-3\n+1e300 vertex 1 1e-999 0 vertex 7 8 9"));
+  test::write_file(folder_ / "a.stl",
+                   "SOLID a\n" + facet("VERTEX 0.1 -2E-3\n+1e300 vertex 1 1e-999 0 vertex 7 8 9") + "endsolid");
   EXPECT_EQ(read_mesh(folder_ / "a.stl").vertices,
             (std::vector<Eigen::Vector3d>{{0.1, -2e-3, 1e300}, {1, 0, 0}, {7, 8, 9}}));
   std::string solid = whole;  // some programs begin binary files so, too

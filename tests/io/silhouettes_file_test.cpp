@@ -74,8 +74,24 @@ TEST_F(SilhouettesFile, RowsRunDownward) {
   EXPECT_EQ(s.pixels, (Bytes{1, 0, 0, 0, 0, 1}));
 }
 
-TEST_F(SilhouettesFile, SixteenBitsAndBlackAndWhite) {
-  // Made by hand: 16-bit gray 0x7F00, 0x8100 and 1-bit 1, 0.
+TEST_F(SilhouettesFile, SixteenBitsCountByTheirValues) {
+  std::FILE* const file = std::fopen((folder_ / "values.png").c_str(), "wb");
+  ASSERT_NE(file, nullptr);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, file);
+  png_set_IHDR(png, info, 4, 1, 16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  const std::array<png_byte, 8> row = {0x38, 0x00, 0x7F, 0x00, 0x81, 0x00, 0xFF, 0xFF};
+  png_write_row(png, row.data());
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  std::fclose(file);
+  EXPECT_EQ(pixels("values.png"), (Bytes{0, 0, 1, 1}));
+}
+
+TEST_F(SilhouettesFile, SixteenBitsLinearInLight) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = 2;
@@ -160,6 +176,7 @@ TEST_F(SilhouettesFile, WrongEntriesAreNamed) {
   refused(R"({"views": ["none.png"]})", {"v.json: views[0].image", "none.png: no such file"}, ErrorCode::io);
   refused(R"({"views": ["."]})", {"views[0].image", "folder"}, ErrorCode::io);
   refused(R"({"views": ["text.png"]})", {"views[0].image", "text.png: is not a PNG image"});
+  refused(R"({"views":[{"image":"a.png","view":[1e999,0,1]}]})", {"has a number beyond floating point"});
   refused(R"({"views": )" + std::string(200, '[') + std::string(200, ']') + "}", {"nested too deeply"});
   expect_error(ErrorCode::bad_input, {"v.toml: is not TOML: line 2"},
                [&] { set("depth = 3\nviews = [", {}, "v.toml"); });
