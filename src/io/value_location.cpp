@@ -214,13 +214,13 @@ ValueLocation nrrd_location(const fs::path& path) {
   const bool listed = !word.empty() && word[0] == "LIST";
   // A blank alone does not make a pattern: it may be part of a name.
   if (listed || (word.size() >= 4 && word[0].find('%') != std::string_view::npos)) {
+    if (location.packing == Packing::text) refuse(path, "its values are text in several files", kOneFile);
     std::array<std::int64_t, 3> range{};
     for (std::size_t i = 0; i < 3 && !listed; ++i) range[i] = number<int>(word[i + 1]).value_or(0);
     const std::vector<std::string> names =
         listed ? listed_names(std::string_view(head).substr(std::min<std::size_t>(header, head.size())))
                : names_of(path, word[0], range);
     for (const std::string& name : names) location.available += part_size(path, name);
-    location.known = location.packing != Packing::text;  // which is read from one file
     location.direct = false;
     return location;
   }

@@ -364,6 +364,8 @@ TEST_F(VolumeDamage, NrrdOfSeveralFiles) {
   refuse("z.nhdr", listed("2 2 2") + list, {});
   refuse("z.nhdr", pattern("2 2 2"), {});
   refuse("z.nhdr", pattern("100000 100000 2"), {"20000000000 voxels"});
+  refuse("z.nhdr", test::nrrd_header("uint8", "100000 100000 2", 3, "", "text") + "data file: LIST\n" + list,
+         {"save it as one file"});
 }
 
 TEST_F(VolumeDamage, MetaImageOfSeveralFiles) {
