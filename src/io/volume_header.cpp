@@ -76,6 +76,8 @@ void check_meta_header(const fs::path& path) {
   constexpr std::array kTypes{"MET_CHAR", "MET_UCHAR", "MET_SHORT", "MET_USHORT", "MET_INT",       "MET_UINT",
                               "MET_LONG", "MET_ULONG", "MET_FLOAT", "MET_DOUBLE", "MET_LONG_LONG", "MET_ULONG_LONG"};
   bool found = false;
+  int told = 0;
+  std::size_t sizes = 0;
   const auto check = [&](const std::string& key, const std::string& value, std::uint64_t) {
     if (key == "NDims") {
       found = true;
@@ -83,8 +85,12 @@ void check_meta_header(const fs::path& path) {
       if (!dimensions || *dimensions < 1 || *dimensions > 10)
         refuse(path, fmt::format("its header tells of {} dimensions (NDims); a solid has 3", shown(value)),
                kMendHeader);
+      told = *dimensions;
     }
-    if (key == "DimSize") check_sizes(path, value);
+    if (key == "DimSize") {
+      check_sizes(path, value);
+      sizes = words(value).size();
+    }
     if (key == "ElementType" && !value.ends_with("_ARRAY") &&
         std::find(kTypes.begin(), kTypes.end(), value) == kTypes.end())
       refuse(path, fmt::format("has values of an unknown type ({})", shown(value)), "convert it to numbers first");
@@ -103,10 +109,14 @@ void check_meta_header(const fs::path& path) {
   for_each_field(head_of(path, kLongestTextHeader), "=:", check);
   if (!found)
     refuse(path, "is not a MetaImage file", "its contents are not what its name says; check where it comes from");
+  if (sizes != static_cast<std::size_t>(told))
+    refuse(path, fmt::format("its header tells of {} dimensions (NDims), but has {} sizes (DimSize)", told, sizes),
+           kMendHeader);
 }
 
 void check_nrrd_header(const fs::path& path) {
   const auto check = [&](const std::string& name, const std::string& text, std::uint64_t) {
+    if (text.starts_with('=')) return true;  // key:=value pairs mean nothing to us
     const std::string key = lower(name), value = lower(text);
     if (key == "sizes") check_sizes(path, value);
     if (key == "space directions" || key == "space origin")
@@ -116,6 +126,8 @@ void check_nrrd_header(const fs::path& path) {
       for (const std::string_view word : words(value))
         if (const auto x = number<double>(word); !x || !std::isfinite(*x) || *x <= 0)
           refuse(path, fmt::format("its spacings have {}, which is no side of a voxel", shown(word)), kMendHeader);
+    if (key == "encoding" && (value == "bzip2" || value == "bz2"))
+      refuse(path, "its values are packed with bzip2", "save it raw or with gzip");
     return !key.empty();
   };
   const std::string head = head_of(path, kLongestTextHeader);

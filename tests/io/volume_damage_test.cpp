@@ -322,6 +322,89 @@ TEST_F(VolumeDamage, NrrdHeaders) {
   EXPECT_EQ(volume(read_volume(folder_ / "z.nrrd")), 8u);
 }
 
+TEST_F(VolumeDamage, NrrdOddities) {
+  const auto read = [&](const std::string& more, const std::string& values = std::string(8, '\1')) {
+    test::write_file(folder_ / "z.nrrd", test::nrrd_header("uint8", "2 2 2", 3, more) + "\n" + values);
+    return volume(read_volume(folder_ / "z.nrrd"));
+  };
+  EXPECT_EQ(read("sizes:=my sizes\nspacings:=measured by Ann\nspace origin:=nan\n"), 8u);
+  test::write_file(folder_ / "my file.raw", std::string(8, '\1'));
+  EXPECT_EQ(read("data file: my file.raw\n", ""), 8u);
+  test::write_file(folder_ / "my file.raw", std::string(7, '\1'));
+  refuse("z.nrrd", test::nrrd_header("uint8", "2 2 2", 3, "data file: my file.raw\n") + "\n", {"there are 7"});
+  refuse("z.nrrd", test::nrrd_header("uint8", "2 2 2", 3, "", "bzip2") + "\n", {"bzip2", "save it raw or with gzip"});
+}
+
+TEST_F(VolumeDamage, NrrdOfSeveralFiles) {
+  const auto part = [&](int i, std::size_t bytes) {
+    test::write_file(folder_ / ("s0" + std::to_string(i) + ".raw"), std::string(bytes, '\1'));
+  };
+  const std::string list = "s01.raw\ns02.raw\n";
+  const auto listed = [](const std::string& sizes) {
+    const std::string header = test::nrrd_header("uint8", sizes, 3, "");
+    return header + "data file: LIST\n";
+  };
+  const auto pattern = [](const std::string& sizes) {
+    return test::nrrd_header("uint8", sizes, 3, "data file: s%02d.raw 1 2 1\n") + "\n";
+  };
+  part(1, 4);
+  refuse("z.nhdr", listed("2 2 2") + list, {"s02.raw"});
+  refuse("z.nhdr", pattern("2 2 2"), {"s02.raw"});
+  part(2, 3);
+  refuse("z.nhdr", listed("2 2 2") + list, {"need at least 8 bytes, but there are 7"});
+  refuse("z.nhdr", pattern("2 2 2"), {"need at least 8 bytes, but there are 7"});
+  part(2, 4);
+  part(1, 5);
+  for (const std::string& contents : {listed("2 2 2") + list, pattern("2 2 2")}) {
+    test::write_file(folder_ / "z.nhdr", contents);
+    EXPECT_EQ(volume(read_volume(folder_ / "z.nhdr")), 8u);
+  }
+  part(1, 3);
+  part(2, 5);
+  refuse("z.nhdr", listed("2 2 2") + list, {});
+  refuse("z.nhdr", pattern("2 2 2"), {});
+  refuse("z.nhdr", pattern("100000 100000 2"), {"20000000000 voxels"});
+  refuse("z.nhdr", test::nrrd_header("uint8", "100000 100000 2", 3, "", "text") + "data file: LIST\n" + list,
+         {"save it as one file"});
+}
+
+TEST_F(VolumeDamage, MetaImageOfSeveralFiles) {
+  const auto meta = [](const std::string& data, const std::string& size = "2 2 3") {
+    return "ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = " + size +
+           "\nElementType = MET_SHORT\nElementDataFile = " + data;
+  };
+  const auto part = [&](int i, std::size_t bytes) {
+    test::write_file(folder_ / ("s" + std::to_string(i) + ".raw"), std::string(bytes, '\1'));
+  };
+  const auto fine = [&](const std::string& data) {
+    SCOPED_TRACE(data);
+    test::write_file(folder_ / "z.mhd", meta(data));
+    EXPECT_EQ(volume(read_volume(folder_ / "z.mhd")), 12u);
+  };
+  const std::string list = "s1.raw\ns2.raw\ns3.raw\n";
+  part(1, 8);
+  part(2, 8);
+  refuse("z.mhd", meta("LIST\n" + list), {"its data file cannot be read", "s3.raw"});
+  refuse("z.mhd", meta("s%d.raw 1 3 1\n"), {"its data file cannot be read", "s3.raw"});
+  part(3, 7);
+  refuse("z.mhd", meta("LIST\n" + list), {"'s3.raw' has 7 bytes, but a slice needs 8"});
+  refuse("z.mhd", meta("s%d.raw\n"), {"'s3.raw' has 7 bytes, but a slice needs 8"});
+  part(3, 8);
+  for (const std::string& data : {"LIST\n" + list, "LIST 2D\n" + list, "LIST 2\n" + list + "\n"}) fine(data);
+  for (const char* data : {"s%d.raw\n", "s%01d.raw 1\n", "s%d.raw 1 3 1\n"}) fine(data);
+  refuse("z.mhd", meta("LIST\n" + list.substr(0, 14)), {"tells of 3 slices, but names 2 files"});
+  refuse("z.mhd", meta("LIST\n" + list.substr(0, 20)), {"no end", "new line"});
+  refuse("z.mha", meta("LIST\n"), {"tells of 3 slices, but names 0 files"});
+  refuse("z.mhd", meta("s%d.raw 1 2 1\n"), {"tells of 3 slices, but names 2 files"});
+  for (const char* data : {"s%d.raw 1 3\n", "s%d.raw 1 3 0\n", "s%d.raw 3 1 1\n", "s%s.raw 1 3 1\n", "%d%n 1 3 1\n",
+                           "s%d%d.raw\n", "LIST 7 8\n", "LIST x\n"})
+    refuse("z.mhd", meta(data), {"z.mhd: "});
+  refuse("z.mhd", meta("LIST\n" + list, "100000 100000 100000"), {"100000 slices"});
+  refuse("z.mhd", meta("LIST\n" + list, "100000 100000 3"), {"a slice needs 20000000000"});
+  refuse("z.mhd", "CompressedData = True\n" + meta("LIST\n" + list), {"save it as one file"});
+  refuse("z.mhd", meta("LOCAL\n", "2 2"), {"3 dimensions (NDims), but has 2 sizes (DimSize)"});
+}
+
 TEST_F(VolumeDamage, LabelsBeyondDoubles) {
   constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
   test::write_nrrd<std::uint64_t>(folder_ / "z.nrrd", "uint64", "2 2 2",
