@@ -307,6 +307,13 @@ TEST(PictureStack, VoxelSizes) {
                [&] { frame_of("ImageJ=1.53t\nimages=4\nslices=2\nframes=2\n", 1); });
   expect_error(ErrorCode::bad_input, {"tells of 9 pictures but has 2"},
                [&] { frame_of("ImageJ=1.53t\nimages=9\n", 1); });
+  const auto ome = [](const std::string& more) {
+    return "<?xml?><OME><Image><Pixels SizeC=\"1\" SizeT=\"1\" SizeZ=\"5\">" + more + "</Pixels></Image></OME>";
+  };
+  const std::string a = "<TiffData><UUID FileName=\"a.tif\"/></TiffData>";
+  for (const std::string& more : {std::string(), a, a + a})
+    expect_error(ErrorCode::bad_input, {"a.tif: tells of 5 slices but has 2 pages"}, [&] { frame_of(ome(more), 1); });
+  EXPECT_TRUE(frame_of(ome(a + a + "<TiffData><UUID FileName=\"b.tif\"/></TiffData>"), 1) == Frame{});
   for (const double side : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL})
     expect_error(ErrorCode::bad_argument, {"makes no sense"}, [&] {
       frame_of("", 1, {.spacing = std::array<double, 3>{1, side, 1}});
