@@ -53,6 +53,16 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+// One finite number of a decimal string.
+std::optional<double> number(std::string_view word) {
+  while (!word.empty() && (word.front() == ' ' || word.front() == '+')) word.remove_prefix(1);
+  while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
+  double value = 0;
+  const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || last != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 // A decimal string of N numbers; none if there are fewer or one is no finite number.
 template <std::size_t N>
 std::optional<std::array<double, N>> numbers(const DataSet& set, Tag tag) {
@@ -60,12 +70,10 @@ std::optional<std::array<double, N>> numbers(const DataSet& set, Tag tag) {
   std::array<double, N> result{};
   for (double& value : result) {
     const auto end = std::min(rest.find('\\'), rest.size());
-    std::string_view word = rest.substr(0, end);
+    const auto found = number(rest.substr(0, end));
+    if (!found) return std::nullopt;
+    value = *found;
     rest.remove_prefix(std::min(rest.size(), end + 1));
-    while (!word.empty() && (word.front() == ' ' || word.front() == '+')) word.remove_prefix(1);
-    while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
-    const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || last != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
   }
   return result;
 }
@@ -83,6 +91,22 @@ const Tag kPixelData(0x7fe0, 0x0010);
 const Tag kPosition(0x0020, 0x0032), kOrientation(0x0020, 0x0037), kPixelSpacing(0x0028, 0x0030);
 const Tag kThickness(0x0018, 0x0050), kSliceSpacing(0x0018, 0x0088);
 
+// The numbers of a tag; none if it is absent or empty. What is there but cannot be meant is an error: a place that is
+// not understood must not pass for one that is not told.
+template <std::size_t N>
+std::optional<std::array<double, N>> told(const fs::path& path, const DataSet& set, Tag tag, const char* name) {
+  const std::string_view words = text(set, tag);
+  if (words.empty()) return std::nullopt;
+  const auto found = numbers<N>(set, tag);
+  const bool is_sound = found && (tag != kPixelSpacing || ((*found)[0] > 0 && (*found)[N - 1] > 0));
+  if (!is_sound)
+    refuse(path,
+           fmt::format("its {} ({:04x},{:04x}) makes no sense: '{}'", name, tag.GetGroup(), tag.GetElement(),
+                       printable(words)),
+           kAgain);
+  return found;
+}
+
 // What is known of a frame so far; functional groups of one frame replace what those of all frames say.
 struct Facts {
   std::optional<std::array<double, 3>> position;
@@ -90,25 +114,22 @@ struct Facts {
   std::optional<std::array<double, 2>> spacing;
   std::optional<double> between, thickness, slope, intercept;
 
-  void take(const DataSet& set) {
-    const auto one = [&](Tag tag, std::optional<double>& value) {
-      if (const auto found = numbers<1>(set, tag)) value = (*found)[0];
-    };
-    if (const auto found = numbers<3>(set, kPosition)) position = found;
-    if (const auto found = numbers<6>(set, kOrientation)) orientation = found;
-    if (const auto found = numbers<2>(set, kPixelSpacing)) spacing = found;
-    one(kSliceSpacing, between);
-    one(kThickness, thickness);
+  void take(const fs::path& path, const DataSet& set) {
+    if (const auto found = told<3>(path, set, kPosition, "Image Position")) position = found;
+    if (const auto found = told<6>(path, set, kOrientation, "Image Orientation")) orientation = found;
+    if (const auto found = told<2>(path, set, kPixelSpacing, "Pixel Spacing")) spacing = found;
+    if (const auto found = told<1>(path, set, kSliceSpacing, "Spacing Between Slices")) between = (*found)[0];
+    if (const auto found = told<1>(path, set, kThickness, "Slice Thickness")) thickness = (*found)[0];
   }
   void take_value_meaning(const DataSet& set) {
     if (const auto found = numbers<1>(set, Tag(0x0028, 0x1053))) slope = (*found)[0];
     if (const auto found = numbers<1>(set, Tag(0x0028, 0x1052))) intercept = (*found)[0];
   }
   // An item of the functional groups sequences.
-  void take_groups(const DataSet& groups) {
+  void take_groups(const fs::path& path, const DataSet& groups) {
     gdcm::SmartPointer<gdcm::SequenceOfItems> keep;
     for (const Tag& tag : {Tag(0x0020, 0x9113), Tag(0x0020, 0x9116), Tag(0x0028, 0x9110)})
-      if (const DataSet* set = item(groups, tag, 0, keep)) take(*set);
+      if (const DataSet* set = item(groups, tag, 0, keep)) take(path, *set);
     if (const DataSet* set = item(groups, Tag(0x0028, 0x9145), 0, keep)) take_value_meaning(*set);
   }
 
@@ -119,7 +140,7 @@ struct Facts {
     result.intercept = intercept.value_or(0);
     for (const auto& distance : {thickness, between})
       if (distance && std::abs(*distance) > 0) result.thickness = std::abs(*distance);
-    if (!position || !orientation || !spacing || (*spacing)[0] <= 0 || (*spacing)[1] <= 0) return result;
+    if (!position || !orientation || !spacing) return result;
     result.has_place = true;
     result.position = *position;
     std::copy_n(orientation->begin(), 3, result.along_x.begin());
@@ -162,8 +183,8 @@ void take_frames(const gdcm::File& file, DicomFile& result) {
   const auto count = static_cast<std::size_t>(result.pixels.frames);
   gdcm::SmartPointer<gdcm::SequenceOfItems> keep, per_frame;
   Facts common;
-  if (const DataSet* detector = item(set, Tag(0x0054, 0x0022), 0, keep)) common.take(*detector);
-  common.take(set);
+  if (const DataSet* detector = item(set, Tag(0x0054, 0x0022), 0, keep)) common.take(result.path, *detector);
+  common.take(result.path, set);
   const bool enhanced = set.FindDataElement(Tag(0x5200, 0x9230)) || set.FindDataElement(Tag(0x5200, 0x9229));
   for (const auto& [tag, what] : {std::pair(Tag(0x0028, 0x1053), "slope"), std::pair(Tag(0x0028, 0x1052), "intercept")})
     if (!text(set, tag).empty() && !numbers<1>(set, tag))
@@ -179,13 +200,16 @@ void take_frames(const gdcm::File& file, DicomFile& result) {
     std::vector<double> offset;
     for (std::size_t at = 0; at < offsets.size();) {
       const std::size_t end = std::min(offsets.find('\\', at), offsets.size());
-      const std::string word(offsets.substr(at, end - at));
-      offset.push_back(std::strtod(word.c_str(), nullptr));
+      offset.push_back(number(offsets.substr(at, end - at)).value_or(HUGE_VAL));
       at = end + 1;
     }
+    if (!offset.empty() &&
+        (offset.size() != count || std::find(offset.begin(), offset.end(), HUGE_VAL) != offset.end()))
+      refuse(result.path, fmt::format("its Grid Frame Offset Vector (3004,000c) does not hold {} numbers", count),
+             kAgain);
     for (std::size_t i = 0; i < count; ++i) {
       DicomFrame& frame = result.frames[i];
-      if (offset.size() == count && std::isfinite(offset[i]) && std::isfinite(offset[0]))
+      if (!offset.empty())
         frame = moved(frame, offset[i] - offset[0]);
       else if (common.between && *common.between != 0)
         frame = moved(frame, static_cast<double>(i) * std::abs(*common.between));
@@ -194,11 +218,11 @@ void take_frames(const gdcm::File& file, DicomFile& result) {
     }
     return;
   }
-  if (const DataSet* shared = item(set, Tag(0x5200, 0x9229), 0, keep)) common.take_groups(*shared);
+  if (const DataSet* shared = item(set, Tag(0x5200, 0x9229), 0, keep)) common.take_groups(result.path, *shared);
   for (std::size_t i = 0; i < count; ++i) {
     Facts facts = common;
     if (per_frame ? i < per_frame->GetNumberOfItems() : item(set, Tag(0x5200, 0x9230), i, per_frame) != nullptr)
-      facts.take_groups(per_frame->GetItem(i + 1).GetNestedDataSet());
+      facts.take_groups(result.path, per_frame->GetItem(i + 1).GetNestedDataSet());
     result.frames.push_back(facts.frame());
   }
 }
@@ -247,11 +271,15 @@ DicomFile header_of(const fs::path& path) {
       length = four[0] | std::uint32_t{four[1]} << 8 | std::uint32_t{four[2]} << 16 | std::uint32_t{four[3]} << 24;
     }
     const std::uint64_t there = offset < bytes ? std::min<std::uint64_t>(length, bytes - offset) : 0;
-    if (static_cast<double>(there) < values * (pixels.bits_allocated / 8))
+    const double needed = values * (pixels.bits_allocated / 8);
+    // An odd byte is padded; whole frames more than told mean that their number was lost.
+    const bool too_many = needed > 0 && static_cast<double>(there) >= std::max(2 * needed, needed + 2);
+    if (static_cast<double>(there) < needed || too_many)
       refuse(path,
              fmt::format("its header tells of {} x {} x {} voxels, but it has values of {} bytes", pixels.columns,
                          pixels.rows, pixels.frames, there),
-             "the file was cut off or its header is damaged; get it again from its source");
+             too_many ? "its header is damaged, perhaps its Number of Frames; get it again from its source"
+                      : "the file was cut off or its header is damaged; get it again from its source");
     result.pixels.offset = offset;
   }
   take_frames(file, result);
@@ -414,6 +442,8 @@ void DicomDecoder::decode(const DicomFile& file, std::size_t frame, Component co
     const gdcm::ByteValue* raw = image.GetDataElement().GetByteValue();
     if (!pixels.encapsulated && (!raw || raw->GetLength() < all_bytes))
       damaged("its values are fewer than its header tells");
+    if (!pixels.encapsulated && raw->GetLength() >= std::max(2 * all_bytes, all_bytes + 2))
+      damaged("its values are more than its header tells");
     held.resize(all_bytes);
     if (!image.GetBuffer(held.data())) damaged("its values are damaged");
   }

@@ -51,6 +51,18 @@ std::string_view attribute(std::string_view text, const std::string& key) {
   return text.substr(0, text.find('"'));
 }
 
+// Whether the text of an OME-TIFF file tells of pages in more than one file.
+bool names_several_files(std::string_view text) {
+  const std::string_view first = attribute(text, "FileName");
+  for (;;) {
+    const std::size_t at = text.find(" FileName=\"");
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at);
+    if (attribute(text, "FileName") != first) return true;
+    text.remove_prefix(1);
+  }
+}
+
 std::optional<std::array<double, 3>> sound(const std::array<double, 3>& spacing) {
   for (const double side : spacing)
     if (!(side > 1e-12 && side < 1e9)) return std::nullopt;
@@ -81,6 +93,9 @@ std::optional<std::array<double, 3>> spacing_of_description(const std::string& n
   if (text.find("<OME") == std::string::npos) return std::nullopt;
   if (several(attribute(text, "SizeC"))) refuse("has several channels", "split them first");
   if (several(attribute(text, "SizeT"))) refuse("is a volume at several times", "save one time of it");
+  if (const double slices = number(attribute(text, "SizeZ")).value_or(1);
+      slices > static_cast<double>(pages) && !names_several_files(text))
+    refuse(fmt::format("tells of {} slices but has {} pages", slices, pages), "get it again from its source");
   std::array<double, 3> spacing{};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string key = std::string("PhysicalSize") + "XYZ"[i];

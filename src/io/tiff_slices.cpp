@@ -108,6 +108,10 @@ Picture page_of(TIFF* tiff, const fs::path& path, std::uint64_t file_bytes) {
            kConvert);
   if (meaning != PHOTOMETRIC_MINISBLACK && meaning != PHOTOMETRIC_MINISWHITE && meaning != PHOTOMETRIC_MASK)
     refuse(path, "is not in gray values", kConvert);
+  if (const auto place = field(tiff, TIFFTAG_ORIENTATION, std::uint16_t{ORIENTATION_TOPLEFT});
+      place != ORIENTATION_TOPLEFT)
+    refuse(path, fmt::format("is to be shown turned or mirrored (its orientation is {})", place),
+           "save it as it is to be seen, with orientation 1");
   const auto component = component_of(bits, format);
   const bool turned = meaning == PHOTOMETRIC_MINISWHITE;
   if (!component || (turned && (format != SAMPLEFORMAT_UINT || bits > 16)))
@@ -126,14 +130,36 @@ Picture page_of(TIFF* tiff, const fs::path& path, std::uint64_t file_bytes) {
   return {width, height, *component};
 }
 
+// Whether the file holds all of the directory that libtiff stands at, up to the place of the next one. Without that
+// place libtiff takes the directory for the last.
+bool is_whole_directory(TIFF* tiff, const InputFile& file) {
+  const bool big = TIFFIsBigTIFF(tiff) != 0;
+  const std::uint64_t at = TIFFCurrentDirOffset(tiff), bytes = file.size();
+  const std::size_t count_bytes = big ? 8 : 2, entry_bytes = big ? 20 : 12, place_bytes = big ? 8 : 4;
+  if (at > bytes || bytes - at < count_bytes + place_bytes) return false;
+  std::array<std::uint8_t, 8> written{};
+  file.read_at(at, {written.data(), count_bytes});
+  std::uint64_t entries = 0;
+  for (std::size_t i = 0; i < count_bytes; ++i)
+    entries = entries << 8 | written[TIFFIsBigEndian(tiff) != 0 ? i : count_bytes - 1 - i];
+  return entries <= (bytes - at - count_bytes - place_bytes) / entry_bytes;
+}
+
 TiffFile header_of(const fs::path& path) {
-  const std::uint64_t bytes = InputFile(path).size();
+  const InputFile input(path);
+  const std::uint64_t bytes = input.size();
   const Handle tiff = open(path);
   TiffFile result;
   std::string description;
   std::array<double, 2> resolution{};
   std::uint32_t directory = 0;
-  do {
+  for (bool is_last = false; !is_last; ++directory) {
+    // libtiff takes a chain that cannot be read for its end, so it is asked before whether the chain goes on.
+    if (directory > 0 && TIFFReadDirectory(tiff.get()) != 1)
+      refuse(path, fmt::format("is damaged behind page {}", directory), kAgain);
+    if (!is_whole_directory(tiff.get(), input))
+      refuse(path, fmt::format("is cut off in page {}", directory + 1), kAgain);
+    is_last = TIFFLastDirectory(tiff.get()) != 0;
     const auto kind = field(tiff.get(), TIFFTAG_SUBFILETYPE, std::uint32_t{0});
     if (directory == 0) {
       if (const char* text = field<char*>(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, nullptr)) description = text;
@@ -144,10 +170,7 @@ TiffFile header_of(const fs::path& path) {
       result.pages.push_back(page_of(tiff.get(), path, bytes));
       result.directories.push_back(directory);
     }
-    ++directory;
-  } while (TIFFReadDirectory(tiff.get()) == 1);
-  // libtiff takes a chain that cannot be read for its end, so the chain is asked whether it has one.
-  if (TIFFLastDirectory(tiff.get()) == 0) refuse(path, fmt::format("is damaged behind page {}", directory), kAgain);
+  }
   if (result.pages.empty()) refuse(path, "has no full picture", kAgain);
   result.spacing = spacing_of_description(path.string(), description, resolution, result.pages.size());
   return result;

@@ -291,6 +291,60 @@ TEST(DicomStack, SeriesThatAreNoVolume) {
   refuse([](Files& f) { f[1].frames = 2000000000; }, {"IM1", "can hold"});
 }
 
+// Only tags that are absent mean that a file does not tell where it lies.
+TEST(DicomStack, GeometryThatMakesNoSense) {
+  std::mt19937 random(43);
+  const Scan scan(random, {5, 4, 3});
+  const auto element = [](std::uint16_t group, std::uint16_t number, const std::string& value) {
+    return test::element(group, number, "DS", value);
+  };
+  const auto check = [&](std::uint16_t group, std::uint16_t number, const std::string& sound, const std::string& bad,
+                         const std::string& name) {
+    SCOPED_TRACE(bad);
+    const test::TemporaryFolder folder;
+    for (int z = 0; z < 3; ++z) {
+      DicomBytes file = scan.file(z);
+      file.thickness = file.between = 2.5;
+      std::string bytes = file.bytes();
+      const std::string old = element(group, number, sound.empty() ? test::decimals(file.position) : sound);
+      const std::size_t at = bytes.find(old);
+      ASSERT_NE(at, std::string::npos);
+      bytes.replace(at, old.size(), element(group, number, bad));
+      write_file(folder / fmt::format("IM{}", z), bytes);
+    }
+    expect_error(ErrorCode::bad_input, {"IM0: its " + name, fmt::format("({:04x},{:04x})", group, number), bad},
+                 [&] { read_volume(folder.path()); });
+  };
+  for (const char* bad : {"0\\1", "-1\\1", "1\\0", "nan\\1", "inf\\1", "1", "a\\b"})
+    check(0x28, 0x30, "0.9375\\0.7", bad, "Pixel Spacing");
+  for (const char* bad : {"nan\\0\\0", "a\\b\\c", "1\\2"}) check(0x20, 0x32, "", bad, "Image Position");
+  check(0x20, 0x37, "1\\0\\0\\0\\1\\0", "1\\0\\0\\0\\1", "Image Orientation");
+  check(0x18, 0x88, "2.5", "nan", "Spacing Between Slices");
+  check(0x18, 0x50, "2.5", "wide", "Slice Thickness");
+}
+
+TEST(DicomStack, LostNumberOfFrames) {
+  const test::TemporaryFolder folder;
+  std::mt19937 random(44);
+  const Scan scan(random, {5, 4, 3});
+  DicomBytes file = scan.file(0);
+  for (const std::size_t frames : {2u, 3u}) {
+    file.pixels = test::raw_bytes(scan.stored).substr(0, frames * 40);
+    write_file(folder / "a.dcm", file.bytes());
+    expect_error(
+        ErrorCode::bad_input,
+        {"a.dcm: its header tells of 5 x 4 x 1 voxels", fmt::format("values of {} bytes", frames * 40), "Frames"},
+        [&] { read_volume(folder / "a.dcm"); });
+  }
+  // One byte is padded to two.
+  file.columns = file.rows = 1;
+  file.allocated = file.stored = 8;
+  file.high = 7;
+  file.pixels = "a";
+  write_file(folder / "a.dcm", file.bytes());
+  EXPECT_EQ(volume(read_volume(folder / "a.dcm", {.low = 1.0})), 1u);
+}
+
 TEST(DicomStack, OneSliceOrWithoutPlaces) {
   const test::TemporaryFolder folder;
   std::mt19937 random(37);
@@ -341,6 +395,12 @@ TEST(DicomStack, FramesOfOneFile) {
   file.doses = test::element(0x3004, 0x0c, "DS", test::decimals({0, 2.5, 5, 7.5, 10, 12.5}));
   write_file(folder / "offsets.dcm", file.bytes());
   scan.expect_same<std::int16_t>(folder / "offsets.dcm", "int16", same, {.low = 0.0});
+  for (const char* bad : {"0\\2.5\\nan\\7.5\\10\\12.5", "0\\2.5\\5\\7.5\\x\\12.5", "0\\2.5\\5"}) {
+    file.doses = test::element(0x3004, 0x0c, "DS", bad);
+    write_file(folder / "bad.dcm", file.bytes());
+    expect_error(ErrorCode::bad_input, {"bad.dcm: its Grid Frame Offset Vector (3004,000c)", "6 numbers"},
+                 [&] { read_volume(folder / "bad.dcm"); });
+  }
   file.doses.clear();
   write_file(folder / "nowhere.dcm", file.bytes());
   EXPECT_EQ(read_volume(folder / "nowhere.dcm").frame().unit, "voxel");

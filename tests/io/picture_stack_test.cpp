@@ -244,6 +244,32 @@ TEST(PictureStack, FoldersOfTiffFilesAndReducedCopies) {
   EXPECT_NE(warnings[1].find("no single pattern"), std::string::npos) << warnings[1];
 }
 
+// Pages that cannot be reached are an error, not the end of the volume.
+TEST(PictureStack, TiffChainsThatBreakOff) {
+  const test::TemporaryFolder folder;
+  for (const bool big_endian : {false, true}) {
+    TiffPage page;
+    page.values = "a";
+    const std::string two = test::tiff_bytes({page, page}, big_endian);
+    const std::string whole = test::tiff_bytes({page, page, page}, big_endian);
+    // The third page is its value, padded, and then its directory, which starts with a count of two bytes.
+    for (std::size_t size = two.size() + 2; size < whole.size(); ++size) {
+      SCOPED_TRACE(size);
+      write_file(folder / "a.tif", whole.substr(0, size));
+      expect_error(ErrorCode::bad_input, {"a.tif: is "}, [&] { read_volume(folder / "a.tif"); });
+    }
+    for (const std::uint32_t place : {0xfffffff0u, static_cast<std::uint32_t>(whole.size()), 8u}) {
+      SCOPED_TRACE(place);
+      std::string bytes = whole;
+      bytes.replace(two.size() - 4, 4, big_endian ? test::big(place) : test::little(place));
+      write_file(folder / "a.tif", bytes);
+      expect_error(ErrorCode::bad_input, {"a.tif: is damaged behind page 2"}, [&] { read_volume(folder / "a.tif"); });
+    }
+    write_file(folder / "a.tif", whole);
+    EXPECT_EQ(volume(read_volume(folder / "a.tif", {.low = 1.0})), 3u);
+  }
+}
+
 TEST(PictureStack, VoxelSizes) {
   const test::TemporaryFolder folder;
   const auto frame_of = [&](const std::string& description, double resolution, const VolumeOptions& options = {}) {
@@ -281,6 +307,13 @@ TEST(PictureStack, VoxelSizes) {
                [&] { frame_of("ImageJ=1.53t\nimages=4\nslices=2\nframes=2\n", 1); });
   expect_error(ErrorCode::bad_input, {"tells of 9 pictures but has 2"},
                [&] { frame_of("ImageJ=1.53t\nimages=9\n", 1); });
+  const auto ome = [](const std::string& more) {
+    return "<?xml?><OME><Image><Pixels SizeC=\"1\" SizeT=\"1\" SizeZ=\"5\">" + more + "</Pixels></Image></OME>";
+  };
+  const std::string a = "<TiffData><UUID FileName=\"a.tif\"/></TiffData>";
+  for (const std::string& more : {std::string(), a, a + a})
+    expect_error(ErrorCode::bad_input, {"a.tif: tells of 5 slices but has 2 pages"}, [&] { frame_of(ome(more), 1); });
+  EXPECT_TRUE(frame_of(ome(a + a + "<TiffData><UUID FileName=\"b.tif\"/></TiffData>"), 1) == Frame{});
   for (const double side : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL})
     expect_error(ErrorCode::bad_argument, {"makes no sense"}, [&] {
       frame_of("", 1, {.spacing = std::array<double, 3>{1, side, 1}});
@@ -344,6 +377,12 @@ TEST(PictureStack, WhatIsNoStack) {
   other.width = 2;
   other.values = "ab";
   refuse({{"1.tif", test::tiff_bytes({page, other})}}, {"differ in size", "page 1 of 1.tif", "page 2 of 1.tif"});
+  // The last entry, the format of the values, becomes the orientation.
+  std::string mirrored = tiff;
+  mirrored.replace(mirrored.size() - 16, 12,
+                   test::little(std::uint16_t{274}) + test::little(std::uint16_t{3}) + test::little(std::uint32_t{1}) +
+                       test::little(std::uint32_t{4}));
+  refuse({{"1.tif", mirrored}}, {"1.tif: is to be shown turned or mirrored", "orientation is 4"});
   const test::TemporaryFolder folder;
   test::write_nrrd<std::uint8_t>(folder / "a.nrrd", "uint8", "1 1 1", {1});
   expect_error(ErrorCode::bad_argument, {"a.nrrd", "spacing"}, [&] {
