@@ -30,8 +30,7 @@ LabelMap from_volume(Session& session, const BuildOptions& o, const std::optiona
   if (o.spacing) facts["spacing"] = *o.spacing;
   options.warn = [&](const std::string& what) { session.warn(what); };
   if (o.centre) facts["centre"] = true;
-  LabelMap labels =
-      session.stage("build", [&](const Work& work) { return read_label_volume(o.input, options, work); });
+  LabelMap labels = session.stage("build", [&](const Work& work) { return read_label_volume(o.input, options, work); });
   facts["depth"] = labels.depth();
   if (!like) return labels;
   facts["like"] = base_name(*o.like);

@@ -145,7 +145,7 @@ class BinaryVertices {
         }
       size += element.properties[k].size();
     }
-    const std::uint64_t rows = std::max<std::uint64_t>(1, 65536 / size);
+    const std::uint64_t rows = std::max<std::uint64_t>(1, 65536 / std::max<std::uint64_t>(1, size));
     std::vector<std::uint8_t> buffer(static_cast<std::size_t>(rows * size));
     for (std::uint64_t done = 0; done < element.count;) {
       const std::uint64_t part = std::min(rows, element.count - done);
