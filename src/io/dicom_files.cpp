@@ -5,6 +5,7 @@
 #include <gdcmImageReader.h>
 #include <gdcmMediaStorage.h>
 #include <gdcmReader.h>
+#include <gdcmSequenceOfFragments.h>
 #include <gdcmSequenceOfItems.h>
 
 #include <algorithm>
@@ -376,6 +377,20 @@ void convert(const char* bytes, std::size_t count, const DicomPixels& pixels, co
   }
 }
 
+// How many fragments of packed values begin a frame: with the first marker of JPEG, JPEG-LS or JPEG 2000, or with the
+// header of RLE, whose first segment lies behind its 64 bytes.
+std::size_t frames_begun(const gdcm::SequenceOfFragments& fragments) {
+  std::size_t result = 0;
+  for (std::size_t i = 0; i < fragments.GetNumberOfFragments(); ++i) {
+    const gdcm::ByteValue* value = fragments.GetFragment(i).GetByteValue();
+    if (!value || !value->GetPointer() || value->GetLength() < 8) continue;
+    const std::string_view bytes(value->GetPointer(), 8);
+    const bool rle = bytes[0] >= 1 && bytes[0] <= 15 && bytes.substr(1) == std::string_view("\0\0\0\x40\0\0\0", 7);
+    if (rle || bytes.starts_with("\xff\xd8\xff") || bytes.starts_with("\xff\x4f\xff\x51")) ++result;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<DicomFile> read_dicom_headers(const std::vector<fs::path>& files) {
@@ -443,6 +458,9 @@ void DicomDecoder::decode(const DicomFile& file, std::size_t frame, Component co
     if (!pixels.encapsulated && (!raw || raw->GetLength() < all_bytes))
       damaged("its values are fewer than its header tells");
     if (!pixels.encapsulated && raw->GetLength() >= std::max(2 * all_bytes, all_bytes + 2))
+      damaged("its values are more than its header tells");
+    const gdcm::SequenceOfFragments* fragments = image.GetDataElement().GetSequenceOfFragments();
+    if (fragments && frames_begun(*fragments) > file.frames.size())
       damaged("its values are more than its header tells");
     held.resize(all_bytes);
     if (!image.GetBuffer(held.data())) damaged("its values are damaged");

@@ -471,6 +471,9 @@ TEST(DicomStack, CompressedSlicesAndFrames) {
   file.pixels = test::item("") + all;
   write_file(folder / "frames.dcm", file.bytes());
   scan.expect_same<std::int16_t>(folder / "frames.dcm", "int16", same, {.low = 0.0});
+  file.frames = 0;
+  write_file(folder / "lost.dcm", file.bytes());
+  expect_error(ErrorCode::bad_input, {"lost.dcm", "values are"}, [&] { read_volume(folder / "lost.dcm"); });
 }
 
 TEST(DicomStack, OtherFilesArePassedOver) {
