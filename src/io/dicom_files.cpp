@@ -36,7 +36,7 @@ constexpr const char* kAgain = "get it again from its source";
 }
 
 // The element's bytes without padding; empty when it is not there.
-std::string_view text(const DataSet& set, Tag tag) {
+std::string_view text(const DataSet& set, const Tag& tag) {
   if (!set.FindDataElement(tag)) return {};
   const gdcm::ByteValue* value = set.GetDataElement(tag).GetByteValue();
   if (!value || !value->GetPointer()) return {};
@@ -66,7 +66,7 @@ std::optional<double> number(std::string_view word) {
 
 // A decimal string of N numbers; none if there are fewer or one is no finite number.
 template <std::size_t N>
-std::optional<std::array<double, N>> numbers(const DataSet& set, Tag tag) {
+std::optional<std::array<double, N>> numbers(const DataSet& set, const Tag& tag) {
   std::string_view rest = text(set, tag);
   std::array<double, N> result{};
   for (double& value : result) {
@@ -80,7 +80,7 @@ std::optional<std::array<double, N>> numbers(const DataSet& set, Tag tag) {
 }
 
 // The first item of a sequence, or the item of that index.
-const DataSet* item(const DataSet& set, Tag sequence, std::size_t index,
+const DataSet* item(const DataSet& set, const Tag& sequence, std::size_t index,
                     gdcm::SmartPointer<gdcm::SequenceOfItems>& keep) {
   if (!set.FindDataElement(sequence)) return nullptr;
   keep = set.GetDataElement(sequence).GetValueAsSQ();
@@ -272,7 +272,8 @@ DicomFile header_of(const fs::path& path) {
       length = four[0] | std::uint32_t{four[1]} << 8 | std::uint32_t{four[2]} << 16 | std::uint32_t{four[3]} << 24;
     }
     const std::uint64_t there = offset < bytes ? std::min<std::uint64_t>(length, bytes - offset) : 0;
-    const double needed = values * (pixels.bits_allocated / 8);
+    const unsigned bytes_each = pixels.bits_allocated / 8;
+    const double needed = values * bytes_each;
     // An odd byte is padded; whole frames more than told mean that their number was lost.
     const bool too_many = needed > 0 && static_cast<double>(there) >= std::max(2 * needed, needed + 2);
     if (static_cast<double>(there) < needed || too_many)
