@@ -1,6 +1,7 @@
 """What Blackleaf demands of its own speed and size, and whether the stored figures hold it (bench/compare --check)."""
 
 MEGABYTE = 1e6
+ATLAS_VOXELS = 181 * 217 * 181  # of aal.nii.gz
 NANOSECOND = 1e-9
 
 
@@ -28,7 +29,7 @@ class Figures:
 
     def megabytes_a_second(self, key, side):
         """Of in-memory octree."""
-        return self.ours(f"memory/{side}") / self.ours(f"{key}/{side}") / MEGABYTE
+        return self.ours(f"memory/{side}") / self.ours(f"{key}/{side}/t2") / MEGABYTE
 
 
 def demands():
@@ -51,11 +52,11 @@ def demands():
         for who in ("openvdb", "octomap", "bits-zstd", "octomap-zstd"):
             yield f"file/{side}: {who}", lambda f, k=f"file/{side}", w=who: f.times(k, w), "at least", 1
         for key in ("save", "load"):
-            yield f"{key}/{side}: MB/s", lambda f, k=key, s=side: f.megabytes_a_second(k, s), "at least", 200
+            yield f"{key}/{side}/t2: MB/s", lambda f, k=key, s=side: f.megabytes_a_second(k, s), "at least", 200
     yield "curve/decode: ns", lambda f: f.ours("curve/decode") / NANOSECOND, "at most", 12
     yield "curve/encode: ns", lambda f: f.ours("curve/encode") / NANOSECOND, "at most", 12
     yield "curve/walk: ns a voxel", lambda f: f.ours("curve/walk") / NANOSECOND, "at most", 1.5
-    yield "labels/atlas: million voxels/s", lambda f: 1e-6 / f.ours("labels/atlas"), "at least", 300
+    yield "labels/atlas: million voxels/s", lambda f: ATLAS_VOXELS / f.ours("labels/atlas") / 1e6, "at least", 300
 
 
 def report(results):
