@@ -272,7 +272,7 @@ DicomFile header_of(const fs::path& path) {
       length = four[0] | std::uint32_t{four[1]} << 8 | std::uint32_t{four[2]} << 16 | std::uint32_t{four[3]} << 24;
     }
     const std::uint64_t there = offset < bytes ? std::min<std::uint64_t>(length, bytes - offset) : 0;
-    const unsigned bytes_each = pixels.bits_allocated / 8;
+    const unsigned bytes_each = static_cast<unsigned>(pixels.bits_allocated) / 8;
     const double needed = values * bytes_each;
     // An odd byte is padded; whole frames more than told mean that their number was lost.
     const bool too_many = needed > 0 && static_cast<double>(there) >= std::max(2 * needed, needed + 2);
