@@ -43,6 +43,22 @@ LabelMap build_labels(Session& session, const BuildOptions& options, const std::
 /// The universe of --like for a run stream of this depth: throws if its depth is another. Notes it in `facts`.
 Frame frame_for_runs(const BuildOptions& options, const Octree& like, int depth, Json& facts);
 
+/// The options that all volumes share, into VolumeOptions or LabelVolumeOptions.
+template <class Options>
+void take_volume_options(const Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts,
+                         Options& options) {
+  if (o.series) {
+    options.series = *o.series;
+    facts["series"] = *o.series;
+  }
+  options.spacing = o.spacing;
+  if (o.spacing) facts["spacing"] = *o.spacing;
+  options.warn = [&session](const std::string& what) { session.warn(what); };
+  options.depth = like ? like->depth() : o.depth.value_or(0);
+  options.centre = o.centre;
+  if (o.centre) facts["centre"] = true;
+}
+
 /// What the function returns; its errors begin with the file's name.
 template <class Function>
 auto naming(const std::string& file, Function&& function) {

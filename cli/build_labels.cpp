@@ -20,16 +20,7 @@ LabelMap from_volume(Session& session, const BuildOptions& o, const std::optiona
   } else {
     facts["labels"] = true;
   }
-  options.depth = like ? like->depth() : o.depth.value_or(0);
-  options.centre = o.centre;
-  if (o.series) {
-    options.series = *o.series;
-    facts["series"] = *o.series;
-  }
-  options.spacing = o.spacing;
-  if (o.spacing) facts["spacing"] = *o.spacing;
-  options.warn = [&](const std::string& what) { session.warn(what); };
-  if (o.centre) facts["centre"] = true;
+  take_volume_options(session, o, like, facts, options);
   LabelMap labels = session.stage("build", [&](const Work& work) { return read_label_volume(o.input, options, work); });
   facts["depth"] = labels.depth();
   if (!like) return labels;

@@ -69,16 +69,7 @@ Octree build_volume(Session& session, const BuildOptions& o, const std::optional
   }
   options.label = o.label;
   if (o.label) facts["label"] = *o.label;
-  if (o.series) {
-    options.series = *o.series;
-    facts["series"] = *o.series;
-  }
-  options.spacing = o.spacing;
-  if (o.spacing) facts["spacing"] = *o.spacing;
-  options.warn = [&](const std::string& what) { session.warn(what); };
-  options.depth = like ? like->depth() : o.depth.value_or(0);
-  options.centre = o.centre;
-  if (o.centre) facts["centre"] = true;
+  take_volume_options(session, o, like, facts, options);
   if (like) facts["like"] = base_name(*o.like);
   // The volume is built while it is read, so this is one stage.
   Octree octree = session.stage("build", [&](const Work& work) { return read_volume(o.input, options, work); });

@@ -112,7 +112,9 @@ class BandRule {
   static constexpr std::size_t kFew = 16;
 
   L search(T value) const {
-    if (value != value) return 0;  // NaN
+    if constexpr (std::is_floating_point_v<T>) {
+      if (std::isnan(value)) return 0;
+    }
     return static_cast<L>(std::upper_bound(bounds_.begin(), bounds_.end(), value) - bounds_.begin());
   }
 

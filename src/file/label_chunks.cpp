@@ -36,15 +36,7 @@ class FrameReader {
   }
 
   std::uint64_t varint() {
-    std::uint64_t value = 0;
-    for (int shift = 0; shift < 7 * static_cast<int>(kMaxVarintBytes); shift += 7) {
-      const std::uint8_t group = byte();
-      value |= std::uint64_t{group & 0x7Fu} << shift;
-      if (group & 0x80) continue;
-      if (group == 0 && shift > 0) throw Damage{"a number is written with more bytes than it needs"};
-      return value;
-    }
-    throw Damage{"a number is longer than any universe"};
+    return read_varint([&] { return byte(); }, [](const char* what) { throw Damage{std::string("a number ") + what}; });
   }
 
   void expect_end() {

@@ -40,6 +40,22 @@ inline constexpr std::uint64_t kMaxExpansion = std::uint64_t{1} << 15;
 // Run lengths stay below 2^60, nine groups of seven bits.
 inline constexpr std::size_t kMaxVarintBytes = 9;
 
+/// A number in groups of seven bits, the lowest first. byte() gives the next byte; fail(what) is told what is wrong
+/// with a number and does not return.
+template <class Byte, class Fail>
+std::uint64_t read_varint(const Byte& byte, const Fail& fail) {
+  std::uint64_t value = 0;
+  for (int shift = 0; shift < 7 * static_cast<int>(kMaxVarintBytes); shift += 7) {
+    const std::uint8_t group = byte();
+    value |= std::uint64_t{group & 0x7Fu} << shift;
+    if (group & 0x80) continue;
+    if (group == 0 && shift > 0) fail("is written with more bytes than it needs");
+    return value;
+  }
+  fail("is longer than any universe");
+  return 0;
+}
+
 enum class Content : std::uint8_t { solid = 0, labels = 1 };
 
 enum class ChunkKind : std::uint8_t {

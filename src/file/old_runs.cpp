@@ -123,15 +123,7 @@ class RunReader {
   }
 
   std::uint64_t varint() {
-    std::uint64_t value = 0;
-    for (int shift = 0; shift < 7 * static_cast<int>(kMaxVarintBytes); shift += 7) {
-      const std::uint8_t group = byte();
-      value |= std::uint64_t{group & 0x7Fu} << shift;
-      if (group & 0x80) continue;
-      if (group == 0 && shift > 0) fail(fmt::format("run {} is written with more bytes than it needs", runs_));
-      return value;
-    }
-    fail(fmt::format("run {} is longer than any universe", runs_));
+    return read_varint([&] { return byte(); }, [&](const char* what) { fail(fmt::format("run {} {}", runs_, what)); });
   }
 
   void end_chunk(const ChunkEntry& entry) {

@@ -354,28 +354,7 @@ void convert(const char* bytes, std::size_t count, const DicomPixels& pixels, co
 
 void convert(const char* bytes, std::size_t count, const DicomPixels& pixels, const DicomFrame& frame,
              Component component, void* values) {
-  switch (component) {
-    case Component::u8:
-      return convert<std::uint8_t>(bytes, count, pixels, frame, values);
-    case Component::i8:
-      return convert<std::int8_t>(bytes, count, pixels, frame, values);
-    case Component::u16:
-      return convert<std::uint16_t>(bytes, count, pixels, frame, values);
-    case Component::i16:
-      return convert<std::int16_t>(bytes, count, pixels, frame, values);
-    case Component::u32:
-      return convert<std::uint32_t>(bytes, count, pixels, frame, values);
-    case Component::i32:
-      return convert<std::int32_t>(bytes, count, pixels, frame, values);
-    case Component::u64:
-      return convert<std::uint64_t>(bytes, count, pixels, frame, values);
-    case Component::i64:
-      return convert<std::int64_t>(bytes, count, pixels, frame, values);
-    case Component::f32:
-      return convert<float>(bytes, count, pixels, frame, values);
-    case Component::f64:
-      return convert<double>(bytes, count, pixels, frame, values);
-  }
+  with_type_of(component, [&]<class T>(T) { convert<T>(bytes, count, pixels, frame, values); });
 }
 
 // How many fragments of packed values begin a frame: with the first marker of JPEG, JPEG-LS or JPEG 2000, or with the

@@ -22,6 +22,33 @@ std::string image_suffix(const std::filesystem::path& path);
 
 enum class Component { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
 std::size_t bytes_of(Component component);
+/// What function(T{}) returns, T being the component's type: the one switch over the types of values.
+template <class Function>
+auto with_type_of(Component component, Function&& function) {
+  switch (component) {
+    case Component::u8:
+      return function(std::uint8_t{});
+    case Component::i8:
+      return function(std::int8_t{});
+    case Component::u16:
+      return function(std::uint16_t{});
+    case Component::i16:
+      return function(std::int16_t{});
+    case Component::u32:
+      return function(std::uint32_t{});
+    case Component::i32:
+      return function(std::int32_t{});
+    case Component::u64:
+      return function(std::uint64_t{});
+    case Component::i64:
+      return function(std::int64_t{});
+    case Component::f32:
+      return function(float{});
+    case Component::f64:
+      break;
+  }
+  return function(double{});
+}
 
 /// World = origin + sum of p[i] axes[i], where p counts voxels from the *centre* of the first one.
 struct ImageGeometry {

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -51,5 +52,18 @@ class Isolated {
   pid_t child_ = -1;
   int status_ = 0;
 };
+
+/// Reads `count` things from the child piece by piece, so that a count that is not true takes no memory. False when its
+/// answer ends before.
+template <class Container>
+bool read_items(Isolated& child, std::uint64_t count, Container& items) {
+  constexpr std::uint64_t kPiece = std::uint64_t{1} << 16;
+  while (items.size() < count) {
+    const std::size_t done = items.size();
+    items.resize(static_cast<std::size_t>(std::min(count, done + std::max<std::uint64_t>(done, kPiece))));
+    if (!child.read(items.data() + done, (items.size() - done) * sizeof items[0])) return false;
+  }
+  return true;
+}
 
 }  // namespace blackleaf::detail

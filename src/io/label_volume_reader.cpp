@@ -36,29 +36,7 @@ class LabelVolumeJob {
     const detail::ImageInformation& information = source_->information();
     size_ = detail::solid_size(information);
     placed_ = detail::place_volume(path_, information, options_.depth, options_.centre);
-    switch (*information.component) {
-      case Component::u8:
-        return labels<std::uint8_t>();
-      case Component::i8:
-        return labels<std::int8_t>();
-      case Component::u16:
-        return labels<std::uint16_t>();
-      case Component::i16:
-        return labels<std::int16_t>();
-      case Component::u32:
-        return labels<std::uint32_t>();
-      case Component::i32:
-        return labels<std::int32_t>();
-      case Component::u64:
-        return labels<std::uint64_t>();
-      case Component::i64:
-        return labels<std::int64_t>();
-      case Component::f32:
-        return labels<float>();
-      case Component::f64:
-        return labels<double>();
-    }
-    fail("has values of an unknown type", "");
+    return detail::with_type_of(*information.component, [&]<class T>(T) { return labels<T>(); });
   }
 
  private:

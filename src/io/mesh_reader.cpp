@@ -170,18 +170,6 @@ void answer_mesh(const std::string& name, const detail::Answer& answer) {
   }
 }
 
-// Piece by piece, so that a count that is not true takes no memory.
-template <class Container>
-bool read_items(detail::Isolated& child, std::uint64_t count, Container& items) {
-  constexpr std::uint64_t kPiece = std::uint64_t{1} << 16;
-  while (items.size() < count) {
-    const std::size_t done = items.size();
-    items.resize(static_cast<std::size_t>(std::min(count, done + std::max<std::uint64_t>(done, kPiece))));
-    if (!child.read(items.data() + done, (items.size() - done) * sizeof items[0])) return false;
-  }
-  return true;
-}
-
 // Bytes that reading goes through: those of the file, unpacked, and of the files beside it that glTF refers to.
 std::uint64_t bytes_to_read(const std::filesystem::path& path, std::uint64_t size) {
   const std::string suffix = detail::lower(path.extension().string());
@@ -217,8 +205,9 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   AnswerHead head;
   TriangleMesh mesh;
   std::string text;
-  if (!child.read(&head, sizeof head) || !read_items(child, head.error_size, text) ||
-      !read_items(child, head.vertices, mesh.vertices) || !read_items(child, head.triangles, mesh.triangles)) {
+  if (!child.read(&head, sizeof head) || !detail::read_items(child, head.error_size, text) ||
+      !detail::read_items(child, head.vertices, mesh.vertices) ||
+      !detail::read_items(child, head.triangles, mesh.triangles)) {
     if (child.interrupted()) throw Error(ErrorCode::cancelled, name + ": reading it was interrupted");
     throw Error(ErrorCode::bad_input, name + ": is damaged or too much for the reader of its format, which ended",
                 "get it again from its source, or save it as PLY or STL");

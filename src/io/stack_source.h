@@ -41,19 +41,6 @@ class StackSource : public VolumeSource {
   std::unique_ptr<Isolated> child_;
 };
 
-/// Reads `count` things from the child piece by piece, so that a count that is not true takes no memory. False when its
-/// answer ends before.
-template <class Container>
-bool read_items(Isolated& child, std::uint64_t count, Container& items) {
-  constexpr std::uint64_t kPiece = std::uint64_t{1} << 16;
-  while (items.size() < count) {
-    const std::size_t done = items.size();
-    items.resize(static_cast<std::size_t>(std::min(count, done + std::max<std::uint64_t>(done, kPiece))));
-    if (!child.read(items.data() + done, (items.size() - done) * sizeof items[0])) return false;
-  }
-  return true;
-}
-
 /// Throws what there is to say of a file at which the child ended before its time.
 [[noreturn]] void fail_abnormally(Isolated& child, const std::string& file);
 

@@ -29,29 +29,7 @@ bool holds(std::string_view word) {
 }
 
 bool holds(Component component, std::string_view word) {
-  switch (component) {
-    case Component::u8:
-      return holds<std::uint8_t>(word);
-    case Component::i8:
-      return holds<std::int8_t>(word);
-    case Component::u16:
-      return holds<std::uint16_t>(word);
-    case Component::i16:
-      return holds<std::int16_t>(word);
-    case Component::u32:
-      return holds<std::uint32_t>(word);
-    case Component::i32:
-      return holds<std::int32_t>(word);
-    case Component::u64:
-      return holds<std::uint64_t>(word);
-    case Component::i64:
-      return holds<std::int64_t>(word);
-    case Component::f32:
-      return holds<float>(word);
-    case Component::f64:
-      return holds<double>(word);
-  }
-  return false;
+  return with_type_of(component, [&]<class T>(T) { return holds<T>(word); });
 }
 
 bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }

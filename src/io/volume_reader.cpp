@@ -50,29 +50,7 @@ class VolumeJob {
     const ImageInformation& information = source->information();
     size_ = detail::solid_size(information);
     placed_ = detail::place_volume(path_, information, options_.depth, options_.centre);
-    switch (*information.component) {
-      case Component::u8:
-        return octree<std::uint8_t>(*source);
-      case Component::i8:
-        return octree<std::int8_t>(*source);
-      case Component::u16:
-        return octree<std::uint16_t>(*source);
-      case Component::i16:
-        return octree<std::int16_t>(*source);
-      case Component::u32:
-        return octree<std::uint32_t>(*source);
-      case Component::i32:
-        return octree<std::int32_t>(*source);
-      case Component::u64:
-        return octree<std::uint64_t>(*source);
-      case Component::i64:
-        return octree<std::int64_t>(*source);
-      case Component::f32:
-        return octree<float>(*source);
-      case Component::f64:
-        return octree<double>(*source);
-    }
-    fail("has values of an unknown type", "");
+    return detail::with_type_of(*information.component, [&]<class T>(T) { return octree<T>(*source); });
   }
 
  private:

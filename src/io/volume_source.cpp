@@ -100,32 +100,11 @@ void rescale(const void* stored, void* values, std::size_t count, double slope, 
     to[i] = static_cast<Value>(static_cast<double>(static_cast<Value>(from[i])) * slope + intercept);
 }
 
-using Rescale = void (*)(const void*, void*, std::size_t, double, double);
-
-Rescale rescale_from(Component stored) {
-  switch (stored) {
-    case Component::u8:
-      return rescale<std::uint8_t, float>;
-    case Component::i8:
-      return rescale<std::int8_t, float>;
-    case Component::u16:
-      return rescale<std::uint16_t, float>;
-    case Component::i16:
-      return rescale<std::int16_t, float>;
-    case Component::u32:
-      return rescale<std::uint32_t, float>;
-    case Component::i32:
-      return rescale<std::int32_t, float>;
-    case Component::u64:
-      return rescale<std::uint64_t, float>;
-    case Component::i64:
-      return rescale<std::int64_t, float>;
-    case Component::f32:
-      return rescale<float, float>;
-    case Component::f64:
-      return rescale<double, double>;
-  }
-  return nullptr;
+void rescale(Component type, const void* stored, void* values, std::size_t count, double slope, double intercept) {
+  with_type_of(type, [&]<class Stored>(Stored) {
+    using Value = std::conditional_t<std::is_same_v<Stored, double>, double, float>;
+    rescale<Stored, Value>(stored, values, count, slope, intercept);
+  });
 }
 
 std::uint64_t slice_values(const ImageInformation& information) {
@@ -179,7 +158,7 @@ class DirectSource : public VolumeSource {
     for (std::uint64_t done = 0; done < count; done += kAtOnce) {
       const std::uint64_t part = std::min(kAtOnce, count - done);
       read_stored(part, scratch_.data());
-      rescale_from(stored_)(scratch_.data(), values + done * size, part, slope_, intercept_);
+      rescale(stored_, scratch_.data(), values + done * size, part, slope_, intercept_);
     }
   }
 

@@ -39,6 +39,22 @@ std::vector<T> random_values(std::size_t count, std::mt19937& random) {
   return result;
 }
 
+template <class T>
+void expect_the_values(const Octree& octree, const std::vector<T>& values, const std::array<std::int64_t, 3>& size,
+                       const std::array<std::int32_t, 3>& corner, const ValueRange<T>& range) {
+  std::uint64_t black = 0;
+  bool equal = true;
+  std::size_t next = 0;
+  for (int z = 0; z < size[2]; ++z)
+    for (int y = 0; y < size[1]; ++y)
+      for (int x = 0; x < size[0]; ++x, ++next) {
+        black += range(values[next]);
+        equal = equal && range(values[next]) == octree.contains(corner[0] + x, corner[1] + y, corner[2] + z);
+      }
+  EXPECT_TRUE(equal);
+  EXPECT_EQ(volume(octree), black);
+}
+
 TYPED_TEST(Voxels, EveryRangeSizeAndCorner) {
   using T = TypeParam;
   std::mt19937 random(99);
@@ -83,18 +99,7 @@ TYPED_TEST(Voxels, LargeUniversesAndThreads) {
     const ValueRange<T> range{T(1), T(50)};
     const Octree octree = octree_from_voxels<T>({values.data(), size}, range, placement, {}, {1, {}});
     reference::expect_valid(octree);
-    std::uint64_t black = 0;
-    bool equal = true;
-    std::size_t next = 0;
-    for (int z = 0; z < size[2]; ++z)
-      for (int y = 0; y < size[1]; ++y)
-        for (int x = 0; x < size[0]; ++x, ++next) {
-          black += range(values[next]);
-          equal = equal && range(values[next]) == octree.contains(placement.corner[0] + x, placement.corner[1] + y,
-                                                                  placement.corner[2] + z);
-        }
-    EXPECT_TRUE(equal);
-    EXPECT_EQ(volume(octree), black);
+    expect_the_values(octree, values, size, placement.corner, range);
     for (const int threads : {2, 5})
       EXPECT_EQ(octree_from_voxels<T>({values.data(), size}, range, placement, {}, {threads, {}}), octree);
   }
@@ -111,17 +116,7 @@ TYPED_TEST(Voxels, LongRowsAndThinVolumes) {
     for (const std::array<std::int32_t, 3>& corner : {std::array<std::int32_t, 3>{0, 0, 0}, {61, 2, 7}, {64, 127, 1}}) {
       const Octree octree = octree_from_voxels<T>({values.data(), size}, range, {0, corner}, {}, {1, {}});
       reference::expect_valid(octree);
-      std::uint64_t black = 0;
-      bool equal = true;
-      std::size_t next = 0;
-      for (int z = 0; z < size[2]; ++z)
-        for (int y = 0; y < size[1]; ++y)
-          for (int x = 0; x < size[0]; ++x, ++next) {
-            black += range(values[next]);
-            equal = equal && range(values[next]) == octree.contains(corner[0] + x, corner[1] + y, corner[2] + z);
-          }
-      EXPECT_TRUE(equal);
-      EXPECT_EQ(volume(octree), black);
+      expect_the_values(octree, values, size, corner, range);
       EXPECT_EQ(octree_from_voxels<T>({values.data(), size}, range, {0, corner}, {}, {2, {}}), octree);
     }
   }

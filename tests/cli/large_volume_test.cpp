@@ -73,7 +73,8 @@ constexpr rlim_t kLimit = rlim_t{320} << 20;
 
 TEST_F(LargeVolume, RawVolumeBeyondMemory) {
   const Box box{{100, 200, 1000}, {140, 230, 1040}};
-  if (!kLimits || !make_hollow("large.nrrd", {800, 800, 1100}, box)) GTEST_SKIP();
+  if (!kLimits) GTEST_SKIP() << "sanitizers need more address space than the limit";
+  ASSERT_TRUE(make_hollow("large.nrrd", {800, 800, 1100}, box));
   const AddressSpaceLimit limit(kLimit);
   ASSERT_TRUE(limit.works());
   for (const char* threads : {"1", "2"}) {
@@ -84,7 +85,7 @@ TEST_F(LargeVolume, RawVolumeBeyondMemory) {
 }
 
 TEST_F(LargeVolume, PackedVolumeBeyondMemory) {
-  if (!kLimits) GTEST_SKIP();
+  if (!kLimits) GTEST_SKIP() << "sanitizers need more address space than the limit";
   write("large.nrrd", "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 400 400 1600\nencoding: gzip\nendian: little\n\n");
   const gzFile file = gzopen((folder() / "large.nrrd").c_str(), "ab1");
   ASSERT_NE(file, nullptr);
@@ -102,10 +103,11 @@ TEST_F(LargeVolume, PackedVolumeBeyondMemory) {
 
 // On a terminal there is a bar that tells how long it will take; Ctrl-C ends the program at once and leaves nothing.
 TEST_F(LargeVolume, ProgressBarAndInterrupt) {
-  if (!make_hollow("huge.nrrd", {2048, 2048, 16384}, {{0, 0, 0}, {1, 1, 1}})) GTEST_SKIP();
+  if (!make_hollow("huge.nrrd", {2048, 2048, 16384}, {{0, 0, 0}, {1, 1, 1}}))
+    GTEST_SKIP() << "this file system has no files of 64 GiB";
   const std::vector<std::string> before = files();
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) GTEST_SKIP();
+  ASSERT_TRUE(terminal >= 0 && grantpt(terminal) == 0 && unlockpt(terminal) == 0);
   const std::string other_end = ptsname(terminal);
   std::vector<std::string> words = {BLACKLEAF_PROGRAM, "build", "huge.nrrd", "-o", "o.octree"};
   std::vector<char*> argv;
