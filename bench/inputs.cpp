@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <new>
 #include <numbers>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 
 #include "blackleaf/error.h"
 #include "blackleaf/leaves.h"
@@ -36,6 +42,19 @@ TriangleMesh read_binary_stl(const std::string& path) {
 
 std::string side_name(int depth) { return std::to_string(1 << depth); }
 
+void* allocate_large_pages(std::size_t bytes) {
+  constexpr std::size_t kPage = std::size_t{1} << 21;
+  const std::size_t whole = (bytes + kPage - 1) / kPage * kPage;
+  void* const memory = std::aligned_alloc(kPage, whole);
+  if (memory == nullptr) throw std::bad_alloc();
+#ifdef __linux__
+  madvise(memory, whole, MADV_HUGEPAGE);
+#endif
+  return memory;
+}
+
+void free_large_pages(void* memory) { std::free(memory); }
+
 const TriangleMesh& bunny_mesh() {
   static const TriangleMesh mesh = read_binary_stl(BLACKLEAF_DATA "/bunny.stl");
   return mesh;
@@ -58,9 +77,9 @@ const Octree& bunny(int depth) {
   return made.emplace(depth, octree_from_mesh(bunny_mesh(), bunny_placement(depth))).first->second;
 }
 
-const std::vector<std::uint8_t>& bunny_volume(int depth) {
-  static std::map<int, std::vector<std::uint8_t>> made;
-  std::vector<std::uint8_t>& volume = made[depth];
+const Volume& bunny_volume(int depth) {
+  static std::map<int, Volume> made;
+  Volume& volume = made[depth];
   if (volume.empty()) {
     volume.assign(std::size_t{1} << (3 * depth), 0);
     for_each_black_leaf(bunny(depth), [&](const Leaf& leaf) {
@@ -73,7 +92,7 @@ const std::vector<std::uint8_t>& bunny_volume(int depth) {
   return volume;
 }
 
-VolumeView<std::uint8_t> view(const std::vector<std::uint8_t>& volume, int depth) {
+VolumeView<std::uint8_t> view(const Volume& volume, int depth) {
   const std::int64_t side = std::int64_t{1} << depth;
   return {volume.data(), {side, side, side}};
 }
