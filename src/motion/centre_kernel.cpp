@@ -1,48 +1,117 @@
 #include "centre_kernel.h"
 
+#include <cstring>
+
 // Highway compiles what follows once for every instruction set, and chooses when the program runs.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "motion/centre_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#ifndef BLACKLEAF_CENTRE_KERNEL_TABLES
+#define BLACKLEAF_CENTRE_KERNEL_TABLES
+namespace blackleaf::detail {
+namespace {
+
+using Bytes = std::array<std::uint8_t, 64>;  // one for each 2^3 voxels of a block
+
+// [axis][pair]: all ones where a byte's pair of voxels is at `pair` or beyond.
+constexpr auto kFromPair = [] {
+  std::array<std::array<Bytes, 4>, 3> masks{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t pair = 0; pair < 4; ++pair)
+      for (std::size_t byte = 0; byte < 64; ++byte) {
+        const std::size_t place = (byte >> axis & 1) | (byte >> (3 + axis) & 1) << 1;
+        masks[axis][pair][byte] = place >= pair ? 0xFF : 0;
+      }
+  return masks;
+}();
+
+// By the upper four bits of a coordinate, three of which are the voxel: where its byte is, and which of its bits the
+// voxel may be.
+using Nibbles = std::array<std::uint8_t, 16>;
+constexpr auto kByteOf = [] {
+  std::array<Nibbles, 3> tables{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t upper = 0; upper < 16; ++upper) {
+      const std::size_t place = (upper >> 2 & 1) | (upper >> 3) << 3;
+      tables[axis][upper] = static_cast<std::uint8_t>(place << axis);
+    }
+  return tables;
+}();
+constexpr auto kBitOf = [] {
+  constexpr std::array<std::array<std::uint8_t, 2>, 3> kHalves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
+  std::array<Nibbles, 3> tables{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t upper = 0; upper < 16; ++upper) tables[axis][upper] = kHalves[axis][upper >> 1 & 1];
+  return tables;
+}();
+
+const std::uint8_t* bytes_of(const Block* block) { return reinterpret_cast<const std::uint8_t*>(block->data()); }
+
+}  // namespace
+}  // namespace blackleaf::detail
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace blackleaf::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-unsigned look_up_lanes(const FirstCentres& firsts, const CentreSteps& steps, const std::uint32_t* rows,
-                       std::array<std::uint64_t, 8>& bits) {
-  constexpr std::uint32_t kMargin = VoxelRows::kMargin, kRows = VoxelRows::kRows;
-  const hn::CappedTag<std::uint32_t, 16> d;
-  const hn::Rebind<std::int32_t, decltype(d)> index;
+void look_up_lanes(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
+  const hn::CappedTag<std::uint8_t, 64> d;
+  const hn::Repartition<std::uint16_t, decltype(d)> d16;
   const std::size_t lanes = hn::Lanes(d);
-  const auto one = hn::Set(d, 1), two = hn::Set(d, 2), margin = hn::Set(d, kMargin), row_length = hn::Set(d, kRows);
-  const auto fraction = hn::Set(d, (1u << kCentreBits) - 1);
-  const auto first_row = hn::Set(d, kMargin + kRows * kMargin);
-  unsigned unclear = 0;
-  for (unsigned brick = 0; brick < 8; ++brick) {
-    const auto x0 = hn::Set(d, firsts[brick][0]), y0 = hn::Set(d, firsts[brick][1]), z0 = hn::Set(d, firsts[brick][2]);
-    auto least = fraction;
-    std::uint64_t word = 0;
+  const auto low_half = hn::Set(d, 0x0F), never = hn::Set(d, 0x70);
+  const auto two = hn::Set(d16, 2u << (16 - kCentreBits));
+  const auto x_byte = hn::LoadDup128(d, kByteOf[0].data()), x_bit = hn::LoadDup128(d, kBitOf[0].data());
+  const auto y_byte = hn::LoadDup128(d, kByteOf[1].data()), y_bit = hn::LoadDup128(d, kBitOf[1].data());
+  const auto z_byte = hn::LoadDup128(d, kByteOf[2].data()), z_bit = hn::LoadDup128(d, kBitOf[2].data());
+  for (BrickLookUp& brick : bricks) {
+    auto* around = reinterpret_cast<std::uint8_t*>(brick.around.data());
     for (std::size_t i = 0; i < 64; i += lanes) {
-      const auto x = hn::Add(x0, hn::LoadU(d, &steps[0][i]));
-      const auto y = hn::Add(y0, hn::LoadU(d, &steps[1][i]));
-      const auto z = hn::Add(z0, hn::LoadU(d, &steps[2][i]));
-      least = hn::Min(least, hn::Min(hn::And(hn::Add(x, one), fraction),
-                                     hn::Min(hn::And(hn::Add(y, one), fraction), hn::And(hn::Add(z, one), fraction))));
-      const auto row = hn::Add(hn::Add(hn::ShiftRight<kCentreBits>(y), first_row),
-                               hn::Mul(hn::ShiftRight<kCentreBits>(z), row_length));
-      const auto voxels = hn::GatherIndex(d, rows, hn::BitCast(index, row));
-      const auto bit = hn::Shl(one, hn::Add(hn::ShiftRight<kCentreBits>(x), margin));
-      std::array<std::uint8_t, 8> mask{};
-      hn::StoreMaskBits(d, hn::TestBit(voxels, bit), mask.data());
-      word |= std::uint64_t{mask[0] | static_cast<unsigned>(mask[1]) << 8} << i;
+      const auto cell = [&](std::size_t octant) HWY_ATTR { return hn::LoadU(d, bytes_of(brick.cells[octant]) + i); };
+      const auto from = [&](std::size_t axis) HWY_ATTR { return hn::LoadU(d, &kFromPair[axis][brick.pair[axis]][i]); };
+      const auto x = from(0), y = from(1), z = from(2);
+      const auto lower =
+          hn::IfVecThenElse(y, hn::IfVecThenElse(x, cell(0), cell(1)), hn::IfVecThenElse(x, cell(2), cell(3)));
+      const auto upper =
+          hn::IfVecThenElse(y, hn::IfVecThenElse(x, cell(4), cell(5)), hn::IfVecThenElse(x, cell(6), cell(7)));
+      hn::StoreU(hn::IfVecThenElse(z, lower, upper), d, around + i);
     }
-    bits[brick] = word;
-    if (!hn::AllFalse(d, hn::Lt(least, two))) unclear |= 1u << brick;
+    const auto first = hn::LoadDup128(d, around), second = hn::LoadDup128(d, around + 16);
+    const auto third = hn::LoadDup128(d, around + 32), fourth = hn::LoadDup128(d, around + 48);
+    std::array<std::uint8_t, 16> bits{}, unclear{};
+    for (std::size_t i = 0; i < 64; i += lanes) {
+      auto least_even = hn::Set(d16, 0xFFFF), least_odd = least_even;
+      // The upper four bits of the coordinates on an axis, by the centres' indices.
+      const auto upper = [&](std::size_t axis) HWY_ATTR {
+        const auto start = hn::Set(d16, brick.first[axis]);
+        const auto even = hn::Add(start, hn::LoadU(d16, &steps.even[axis][i / 2]));
+        const auto odd = hn::Add(start, hn::LoadU(d16, &steps.odd[axis][i / 2]));
+        least_even = hn::Min(least_even, hn::ShiftLeft<16 - kCentreBits>(even));
+        least_odd = hn::Min(least_odd, hn::ShiftLeft<16 - kCentreBits>(odd));
+        const auto both = hn::OddEven(hn::BitCast(d, odd), hn::BitCast(d, hn::ShiftRight<8>(even)));
+        return hn::And(hn::BitCast(d, hn::ShiftRight<4>(hn::BitCast(d16, both))), low_half);
+      };
+      const auto x = upper(0), y = upper(1), z = upper(2);
+      const auto byte = hn::Or(hn::TableLookupBytes(x_byte, x),
+                               hn::Or(hn::TableLookupBytes(y_byte, y), hn::TableLookupBytes(z_byte, z)));
+      const auto bit = hn::And(hn::TableLookupBytes(x_bit, x),
+                               hn::And(hn::TableLookupBytes(y_bit, y), hn::TableLookupBytes(z_bit, z)));
+      // A table of 64 bytes as four of 16: the upper bit of an index that is not one of the sixteen gets set.
+      const auto part = [&](auto table, std::uint8_t begin) HWY_ATTR {
+        return hn::TableLookupBytesOr0(table, hn::SaturatedAdd(hn::Xor(byte, hn::Set(d, begin)), never));
+      };
+      const auto voxels = hn::Or(hn::Or(part(first, 0), part(second, 16)), hn::Or(part(third, 32), part(fourth, 48)));
+      hn::StoreMaskBits(d, hn::Ne(hn::And(voxels, bit), hn::Zero(d)), &bits[i / 8]);
+      const auto near = hn::OddEven(hn::BitCast(d, hn::VecFromMask(d16, hn::Lt(least_odd, two))),
+                                    hn::BitCast(d, hn::VecFromMask(d16, hn::Lt(least_even, two))));
+      hn::StoreMaskBits(d, hn::MaskFromVec(near), &unclear[i / 8]);
+    }
+    std::memcpy(&brick.bits, bits.data(), sizeof brick.bits);
+    std::memcpy(&brick.unclear, unclear.data(), sizeof brick.unclear);
   }
-  return unclear;
 }
 
 }  // namespace blackleaf::detail::HWY_NAMESPACE
@@ -56,29 +125,34 @@ HWY_EXPORT(look_up_lanes);
 
 bool scalar_wanted = false;
 
-unsigned look_up_scalar(const FirstCentres& firsts, const CentreSteps& steps, const VoxelRows& rows,
-                        std::array<std::uint64_t, 8>& bits) {
-  constexpr std::uint32_t kFraction = (std::uint32_t{1} << kCentreBits) - 1;
-  unsigned unclear = 0;
-  for (unsigned brick = 0; brick < 8; ++brick) {
-    bits[brick] = 0;
+void look_up_scalar(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
+  for (BrickLookUp& brick : bricks) {
+    auto* around = reinterpret_cast<std::uint8_t*>(brick.around.data());
+    for (std::size_t byte = 0; byte < 64; ++byte) {
+      std::size_t octant = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        octant |= std::size_t{kFromPair[axis][brick.pair[axis]][byte] == 0} << axis;
+      around[byte] = bytes_of(brick.cells[octant])[byte];
+    }
+    brick.bits = brick.unclear = 0;
     for (std::size_t i = 0; i < 64; ++i) {
-      const std::uint32_t x = firsts[brick][0] + steps[0][i], y = firsts[brick][1] + steps[1][i],
-                          z = firsts[brick][2] + steps[2][i];
-      for (const std::uint32_t coordinate : {x, y, z})
-        if (((coordinate + 1) & kFraction) < 2) unclear |= 1u << brick;
-      bits[brick] |= std::uint64_t{rows.black(x >> kCentreBits, y >> kCentreBits, z >> kCentreBits)} << i;
+      const auto& of_parity = i % 2 == 0 ? steps.even : steps.odd;
+      std::array<std::uint16_t, 3> at{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        at[axis] = static_cast<std::uint16_t>(brick.first[axis] + of_parity[axis][i / 2]);
+        if ((at[axis] & ((1u << kCentreBits) - 1)) < 2) brick.unclear |= std::uint64_t{1} << i;
+      }
+      const bool black = brick.black(at[0] >> kCentreBits, at[1] >> kCentreBits, at[2] >> kCentreBits);
+      brick.bits |= std::uint64_t{black} << i;
     }
   }
-  return unclear;
 }
 
 }  // namespace
 
-unsigned look_up(const FirstCentres& firsts, const CentreSteps& steps, const VoxelRows& rows,
-                 std::array<std::uint64_t, 8>& bits) {
-  if (scalar_wanted) return look_up_scalar(firsts, steps, rows, bits);
-  return HWY_DYNAMIC_DISPATCH(look_up_lanes)(firsts, steps, rows.data(), bits);
+void look_up(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
+  if (scalar_wanted) return look_up_scalar(steps, bricks);
+  HWY_DYNAMIC_DISPATCH(look_up_lanes)(steps, bricks);
 }
 
 std::vector<std::string> centre_kernels() {

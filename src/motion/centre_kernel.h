@@ -1,30 +1,59 @@
-// The inner loop of `move`: the voxels of eight bricks looked up at centres cut to 32 bits, by SIMD where there is any.
+// The inner loop of `move`: 64 voxel centres of a target brick looked up in the source at once, by SIMD where there is
+// any.
 //
-// A coordinate has 5 bits for the voxel and 27 for the fraction. A centre is the sum of two terms that were cut, which
-// loses less than two units of the last place; so a fraction that is neither 0 nor all ones has the right voxel and
-// lies on no lattice plane. A brick with any other centre is called unclear, and is left to exact arithmetic.
+// The centres of a brick, moved back, lie in a box less than 3 sqrt(3) = 5.2 voxels long, which with the closed cubes
+// on both sides touches at most 7 voxels, so at most 4 pairs of voxels on an axis. Coordinates are therefore needed
+// only modulo 8, and 8^3 voxels are 64 bytes, one for each 2^3 of them: the eight bricks of a cell of level 3 as they
+// are stored. Where the box crosses from one cell to the next, each byte comes from the cell whose pair of voxels is in
+// the box. Nothing is ever shifted.
+//
+// A coordinate has 16 bits: 3 of voxel and 13 of fraction. A centre is the sum of two terms that were cut, which loses
+// less than two units of the last place; so with one unit added, a fraction that is neither 0 nor 1 has the right voxel
+// and lies on no lattice plane. Any other centre is called unclear, and is left to exact arithmetic.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "voxel_rows.h"
-
 namespace blackleaf::detail {
 
-inline constexpr int kCentreBits = 27;  // of fraction
+inline constexpr int kCentreBits = 13;  // of fraction
 
-/// By axis, then by bit of a brick: from the first centre of a brick to each of its 64.
-using CentreSteps = std::array<std::array<std::uint32_t, 64>, 3>;
-/// By brick, then by axis: the first centre, relative to the origin of the rows.
-using FirstCentres = std::array<std::array<std::uint32_t, 3>, 8>;
+/// By axis: from the first centre of a brick to each of its 64; those with even and those with odd indices apart.
+struct CentreSteps {
+  std::array<std::array<std::uint16_t, 32>, 3> even{}, odd{};
+};
 
-/// Sets bits[i] to the 64 voxels of brick i. Returns the bricks that are unclear, one bit each; their bits are
-/// unspecified. Requires: all centres lie in the rows' range.
-unsigned look_up(const FirstCentres& firsts, const CentreSteps& steps, const VoxelRows& rows,
-                 std::array<std::uint64_t, 8>& bits);
+/// Eight bricks in octant order: 8^3 voxels.
+using Block = std::array<std::uint64_t, 8>;
+
+/// What is asked about a brick, and the answer.
+struct BrickLookUp {
+  /// The first centre, one unit added.
+  std::array<std::uint16_t, 3> first{};
+  /// The first pair of voxels of the box on every axis, 0..3 within its cell.
+  std::array<std::uint8_t, 3> pair{};
+  /// The cells from the one in which the box begins: octant order; the same again on an axis on which it ends there.
+  std::array<const Block*, 8> cells{};
+
+  /// The voxels of the box; those at (x, y, z) modulo 8.
+  Block around{};
+  std::uint64_t bits = 0;     // of the target brick; unspecified where unclear
+  std::uint64_t unclear = 0;  // centres
+
+  /// The colour of a source voxel. Requires: it is in the box.
+  bool black(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    const auto word = static_cast<std::size_t>((x >> 2 & 1) | (y >> 1 & 2) | (z & 4));
+    const auto bit = (x >> 1 & 1) << 3 | (y >> 1 & 1) << 4 | (z >> 1 & 1) << 5 | (x & 1) | (y & 1) << 1 | (z & 1) << 2;
+    return (around[word] >> bit & 1) != 0;
+  }
+};
+
+/// Answers them.
+void look_up(const CentreSteps& steps, std::span<BrickLookUp> bricks);
 
 /// The kernels that this machine can run, best first; the last is "scalar".
 std::vector<std::string> centre_kernels();

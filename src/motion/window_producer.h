@@ -39,27 +39,6 @@ class WindowProducer {
 
   std::uint64_t brick(const Task& task, const Cube& cube) const { return map_.brick(task.window, cube); }
 
-  std::array<Subtree, 8> bricks(Task& task, const Cube& cube) const requires
-      requires(const Map& map, const Window& window) {
-    map.bricks(window, cube);
-  }
-  {
-    const Colour colour = classify(task, cube);
-    std::array<Subtree, 8> children;
-    if (colour == Colour::gray && !task.above_source) return map_.bricks(task.window, cube);
-    children.fill(Subtree::uniform(colour));
-    if (colour == Colour::gray) {
-      for (int octant = 0; octant < 8; ++octant) {
-        const Cube below = cube.child(octant);
-        Task task_below = child(task, below, octant);
-        const Colour own = classify(task_below, below);
-        children[static_cast<std::size_t>(octant)] =
-            own == Colour::gray ? Subtree::brick(brick(task_below, below)) : Subtree::uniform(own);
-      }
-    }
-    return children;
-  }
-
  private:
   Task at(const Cube& cube) const {
     if (cube.level > source_.level()) return {{}, true};
