@@ -1,9 +1,7 @@
 #include "motion_options.h"
 
 #include <fmt/format.h>
-#include <Eigen/LU>
 
-#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -14,8 +12,6 @@
 
 namespace blackleaf::cli {
 namespace {
-
-constexpr double kRigid = 1e-6;  // the tolerance of Motion's constructor
 
 Eigen::Vector3d centre_of_rotation(const std::string& about, const Octree& octree) {
   if (about == "corner") return Eigen::Vector3d::Zero();
@@ -95,29 +91,16 @@ Motion read_matrix(const std::string& path) {
                 fmt::format("matrix '{}' has {} numbers instead of 16", path,
                             numbers.size() > 16 ? "more than 16" : std::to_string(numbers.size())),
                 form);
-  if (numbers[12] != 0 || numbers[13] != 0 || numbers[14] != 0 || numbers[15] != 1)
-    throw Error(ErrorCode::bad_input, fmt::format("the last row of matrix '{}' is not 0 0 0 1", path), form);
-
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j)
-      rotation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = numbers[4 * i + j];
-    translation[static_cast<Eigen::Index>(i)] = numbers[4 * i + 3];
+  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
+  const Eigen::Vector4d last(0, 0, 0, 1);
+  if (matrix.row(3).transpose() != last && matrix.col(3) == last)
+    throw Error(ErrorCode::bad_input, fmt::format("matrix '{}' is written column by column", path),
+                "write it row by row: the translation is the last column");
+  try {
+    return Motion::from(matrix);
+  } catch (const Error& error) {
+    throw Error(ErrorCode::bad_input, fmt::format("matrix '{}': {}", path, error.what()));
   }
-  const std::string rigid = "give a rotation and a translation only";
-  const Eigen::Vector3d lengths = rotation.colwise().norm();
-  if ((lengths.array() - 1).abs().maxCoeff() > kRigid / 2)
-    throw Error(ErrorCode::bad_input,
-                fmt::format("matrix '{}' scales: its columns have lengths {:.6g}, {:.6g}, {:.6g}", path, lengths[0],
-                            lengths[1], lengths[2]),
-                rigid);
-  if ((rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRigid)
-    throw Error(ErrorCode::bad_input, fmt::format("matrix '{}' shears: its columns are not perpendicular", path),
-                rigid);
-  if (rotation.determinant() < 0)
-    throw Error(ErrorCode::bad_input, fmt::format("matrix '{}' mirrors: its determinant is negative", path), rigid);
-  return Motion(rotation, translation);
 }
 
 void LeavingOptions::add_to(CLI::App& app) {

@@ -12,8 +12,6 @@
 namespace blackleaf::cli {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // All of `text` as a number; a leading + is allowed.
 template <class T>
 std::optional<T> number_in(std::string_view text) {
@@ -102,9 +100,7 @@ Motion parse_rotation(const std::string& option, const std::string& text) {
   if (!degrees) refuse(option, text, "an axis and an angle", "write x,y,z:degrees without spaces, like 0,0,1:90");
   const Eigen::Vector3d axis = parse_vector(option, text.substr(0, colon));
   if (axis.isZero(0)) refuse(option, text, "a rotation: its axis is zero", "give an axis like 0,0,1");
-  // The axis is brought near length 1 first, so that its square neither overflows nor vanishes; fmod is exact, so that
-  // full turns cost no digits.
-  return Motion::rotation(axis / axis.cwiseAbs().maxCoeff(), std::fmod(*degrees, 360.0) / 180.0 * kPi);
+  return Motion::rotation_degrees(axis, *degrees);
 }
 
 Range parse_range(const std::string& option, const std::string& text) {

@@ -16,6 +16,7 @@
 #include "blackleaf/mesh_file.h"
 #include "blackleaf/motion.h"
 #include "blackleaf/move.h"
+#include "blackleaf/moving_object.h"
 #include "blackleaf/octree.h"
 #include "blackleaf/octree_file.h"
 #include "blackleaf/points.h"

@@ -1,9 +1,8 @@
-// Moving octrees: integer translation (AN84), arbitrary rotation and translation (WA87), and moving objects.
+// Moving octrees: integer translation (AN84), arbitrary rotation and translation (WA87).
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <utility>
 
 #include "blackleaf/motion.h"
 #include "blackleaf/octree.h"
@@ -28,25 +27,5 @@ Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Le
 /// cube lies outside by more than 2^-16 voxels (no voxel centre is then lost). O(surface of source and target) (WA87,
 /// sections 3 and 4).
 Octree move(const Octree& octree, const Motion& motion, Leaving leaving = Leaving::error, const Work& work = {});
-
-/// A compact source tree and its current motion: moving composes motions and never touches the source, so errors do not
-/// add up (WA87, section 3).
-class MovingObject {
- public:
-  explicit MovingObject(Octree source, Motion motion = {}) : source_(std::move(source)), motion_(std::move(motion)) {}
-
-  const Octree& source() const { return source_; }
-  const Motion& motion() const { return motion_; }
-  /// The object after a further motion: (R'R, R'T + T').
-  MovingObject moved(const Motion& further) const { return MovingObject(source_, further * motion_); }
-  /// The octree at the current motion, computed afresh from the source.
-  Octree octree(Leaving leaving = Leaving::error, const Work& work = {}) const {
-    return move(source_, motion_, leaving, work);
-  }
-
- private:
-  Octree source_;
-  Motion motion_;
-};
 
 }  // namespace blackleaf

@@ -92,8 +92,10 @@ TEST_F(BadInput, MatricesThatAreNotRigid) {
   };
   matrix("1 0.5 0 0\n0 0.866025403784438647 0 0\n0 0 1 0\n0 0 0 1\n", "shears");
   matrix("2 0 0 0\n0 2 0 0\n0 0 2 0\n0 0 0 1\n", "scales");
-  matrix("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n", "mirrors");
-  matrix("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0.5 1\n", "last row");
+  matrix("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n",
+         "it is a reflection along z: its determinant is -1; that is another operation: --reflect z");
+  matrix("1 0 0 4\n0 1 0 0\n0 0 1 0\n0 0 0.5 1\n", "the last row of a motion's matrix is 0 0 0.5 1, not 0 0 0 1");
+  matrix("1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n", "matrix 'm.txt' is written column by column; write it row by row");
   matrix("1 0 0 0\n0 1 0 0\n0 0 1 0\n", "12 numbers");
   matrix("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1 7\n", "more than 16 numbers");
   matrix("1 0 0 nan\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "entry 4");

@@ -156,20 +156,6 @@ TEST(Move, DoesNotMakeHoles) {
   }
 }
 
-TEST(MovingObject, ErrorsDoNotAddUp) {
-  const Octree source = ball(6, {30, 33, 31}, 17);
-  MovingObject object(source);
-  const Motion step = Motion::rotation({1, 2, 3}, 10 * kDegree).about({32, 32, 32});
-  for (int i = 0; i < 36; ++i) object = object.moved(step);
-  EXPECT_TRUE(object.octree() == source);
-  const Motion odd =
-      (Motion::translation({1.5, -2.25, 0.125}) * Motion::rotation({3, -1, 2}, 0.777)).about({32, 32, 32});
-  EXPECT_TRUE(object.moved(odd).moved(odd.inverse()).octree() == source);
-  // Moving trees instead of motions does lose.
-  EXPECT_FALSE(move(move(source, odd), odd.inverse()) == source);
-  EXPECT_TRUE(object.source() == source);
-}
-
 TEST(Move, DepthTwenty) {
   const Octree speck = box(20, {524288, 524288, 524288}, {524300, 524291, 524289});
   const Octree turned = move(speck, Motion::rotation({0, 0, 1}, 90 * kDegree).about(Eigen::Vector3d::Constant(524288)));

@@ -10,7 +10,7 @@
 
 #include "blackleaf/error.h"
 #include "blackleaf/measures.h"
-#include "blackleaf/move.h"
+#include "blackleaf/moving_object.h"
 #include "reference/dense_grid.h"
 
 namespace blackleaf::papers::wa87 {
