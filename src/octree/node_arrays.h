@@ -46,6 +46,19 @@ class PackedBlock {
   Colour colour_ = Colour::white;
 };
 
+/// The first words of all levels of a tree.
+using LevelWords = std::array<const std::uint64_t*, kMaxDepth + 1>;
+inline LevelWords level_words(const Octree& octree) {
+  LevelWords levels{};
+  for (int level = 0; level <= kMaxDepth; ++level) levels[static_cast<std::size_t>(level)] = octree.words(level).data();
+  return levels;
+}
+
+/// The word of a gray node of level 3 or more with black and white children exchanged.
+inline std::uint64_t exchanged(std::uint64_t word) {
+  return (word & ~std::uint64_t{0xFF}) | (~(word | word >> 8) & 0xFF);
+}
+
 class NodeArrays {
  public:
   /// The node of the given level whose children, by octant, are these. Requires: 3 <= level <= 20.
@@ -77,6 +90,11 @@ class NodeArrays {
   /// Appends the nodes of a later stretch of the curve and returns its top node as a node of this one.
   /// `level` is the level of that node. `stretch` is left empty.
   Subtree append(NodeArrays& stretch, Subtree top, int level);
+
+  /// Appends all that is below a gray node of a finished tree, with black and white exchanged if `exchange`, and
+  /// returns the node as one of this object: level by level, because a node's descendants of one level stand together.
+  /// Requires: 3 <= level; the tree has the node; it is entered here with the same table as there. O(words copied).
+  Subtree copy(const LevelWords& from, std::uint64_t word, int level, bool exchange);
 
   /// Moves a block that has been closed here and the nodes below it, all there are, out; the room for them stays.
   /// Requires: `top` was made by this object and is of level 6.

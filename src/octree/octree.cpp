@@ -78,6 +78,60 @@ bool operator==(const Octree& a, const Octree& b) {
 
 namespace detail {
 
+namespace {
+
+/// Words [begin, end) of a level.
+struct Interval {
+  std::uint64_t begin = 0, end = 0;
+};
+
+// The children of the nodes `parents`, which are whole groups of siblings. Groups of children follow each other in
+// curve order, but in which order the curve visits the siblings of one group only the group's table tells; so the
+// interval begins with the least first child among the group of the first parent that has any, at most seven words
+// further on, and ends likewise.
+Interval children_of(const std::uint64_t* words, Interval parents) {
+  const auto parent = [&](std::uint64_t i) { return (words[i] & 0xFF00) != 0; };
+  const auto begin = [&](std::uint64_t i) { return words[i] >> 16; };
+  const auto end = [&](std::uint64_t i) { return begin(i) + static_cast<unsigned>(std::popcount(words[i] & 0xFF00)); };
+  std::uint64_t first = parents.begin, last = parents.end;
+  while (first < last && !parent(first)) ++first;
+  if (first == last) return {};
+  while (!parent(last - 1)) --last;
+  Interval children{begin(first), end(last - 1)};
+  for (std::uint64_t i = first; i < std::min(first + 8, last); ++i)
+    if (parent(i)) children.begin = std::min(children.begin, begin(i));
+  for (std::uint64_t i = last; i-- > std::max(first, last - std::min<std::uint64_t>(last, 8));)
+    if (parent(i)) children.end = std::max(children.end, end(i));
+  return children;
+}
+
+}  // namespace
+
+Subtree NodeArrays::copy(const LevelWords& from, std::uint64_t word, int level, bool exchange) {
+  const auto moved = [&](std::uint64_t old, std::uint64_t by) {
+    const std::uint64_t now = exchange ? exchanged(old) : old;
+    return (now & 0xFF00) ? now + (by << 16) : now;
+  };
+  auto below = static_cast<std::size_t>(level - 1);
+  Interval interval{word >> 16, (word >> 16) + static_cast<unsigned>(std::popcount(word & 0xFF00))};
+  const Subtree top{moved(word, levels_[below].size() - interval.begin), Colour::gray};
+  for (; below > 2 && interval.begin != interval.end; --below) {
+    const Interval next = children_of(from[below], interval);
+    const std::uint64_t by = levels_[below - 1].size() - next.begin;
+    auto& words = levels_[below];
+    const std::size_t before = words.size();
+    words.insert(words.end(), from[below] + interval.begin, from[below] + interval.end);
+    for (std::size_t i = before; i < words.size(); ++i) words[i] = moved(words[i], by);
+    interval = next;
+  }
+  auto& bricks = levels_[2];
+  const std::size_t before = bricks.size();
+  if (below == 2) bricks.insert(bricks.end(), from[2] + interval.begin, from[2] + interval.end);
+  if (exchange)
+    for (std::size_t i = before; i < bricks.size(); ++i) bricks[i] = ~bricks[i];
+  return top;
+}
+
 Subtree NodeArrays::append(NodeArrays& stretch, Subtree top, int level) {
   std::array<std::uint64_t, kMaxDepth + 2> offset{};
   for (std::size_t k = 0; k < levels_.size(); ++k) offset[k] = levels_[k].size();

@@ -14,7 +14,12 @@
 //
 //     std::array<Subtree, 8> bricks(const Task&, const Cube&) const;  // the children of a level-3 node
 //
-// which is then asked instead of the three above for nodes of level 3.
+// which is then asked instead of the three above for nodes of level 3, or even
+//
+//     Subtree subtree(Task&, const Cube&, std::uint8_t table, NodeArrays&) const;  // all of a node
+//
+// which is then asked instead of all others for every node below the top three levels, and must make its nodes in the
+// order of the Millar curve, which enters the node with `table`.
 //
 // Its functions are called from many threads. In a universe of depth 1 the root is asked for as a brick whose octant 0
 // is the universe; what it says of the other voxels is ignored (classify must then not answer black unless octant 0 is
@@ -37,18 +42,22 @@ namespace blackleaf::detail {
 template <class Producer>
 Subtree produce_node(const Producer& producer, typename Producer::Task& task, const Cube& cube, std::uint8_t table,
                      NodeArrays& arrays) {
-  if constexpr (requires { producer.bricks(task, cube); })
-    if (cube.level == 3) return arrays.close(3, producer.bricks(task, cube));
-  const Colour colour = producer.classify(task, cube);
-  if (colour != Colour::gray) return Subtree::uniform(colour);
-  if (cube.level == 2) return Subtree::brick(producer.brick(task, cube));
-  std::array<Subtree, 8> children;
-  for (const curve::Step step : curve::kSteps[table]) {
-    const Cube child = cube.child(step.octant);
-    auto below = producer.child(task, child, step.octant);
-    children[step.octant] = produce_node(producer, below, child, step.table, arrays);
+  if constexpr (requires { producer.subtree(task, cube, table, arrays); }) {
+    return producer.subtree(task, cube, table, arrays);
+  } else {
+    if constexpr (requires { producer.bricks(task, cube); })
+      if (cube.level == 3) return arrays.close(3, producer.bricks(task, cube));
+    const Colour colour = producer.classify(task, cube);
+    if (colour != Colour::gray) return Subtree::uniform(colour);
+    if (cube.level == 2) return Subtree::brick(producer.brick(task, cube));
+    std::array<Subtree, 8> children;
+    for (const curve::Step step : curve::kSteps[table]) {
+      const Cube child = cube.child(step.octant);
+      auto below = producer.child(task, child, step.octant);
+      children[step.octant] = produce_node(producer, below, child, step.table, arrays);
+    }
+    return arrays.close(cube.level, children);
   }
-  return arrays.close(cube.level, children);
 }
 
 template <class Producer>
