@@ -50,6 +50,7 @@ void add_voxels();
 void add_mesh();
 void add_translate();
 void add_move();
+void add_combine();
 void add_interference();
 void add_drawing();
 void add_curve();
@@ -58,6 +59,7 @@ void add_labels();
 // One function a peer, each in a file of its own in peers/.
 void add_scanline();
 void add_openvdb();
+void add_openvdb_sets();
 void add_octomap();
 
 }  // namespace blackleaf::bench

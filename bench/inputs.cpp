@@ -15,6 +15,7 @@
 
 #include "blackleaf/error.h"
 #include "blackleaf/leaves.h"
+#include "blackleaf/move.h"
 
 namespace blackleaf::bench {
 namespace {
@@ -100,6 +101,13 @@ VolumeView<std::uint8_t> view(const Volume& volume, int depth) {
 Motion bunny_motion(int depth) {
   const Motion turn = Motion::rotation(Eigen::Vector3d(1, 1, 1), std::numbers::pi / 6);
   return Motion(turn.rotation(), {5.3, -7.1, 2.9}).about(Eigen::Vector3d::Constant(1 << (depth - 1)));
+}
+
+const Octree& moved_bunny(int depth) {
+  static std::map<int, Octree> made;
+  const auto found = made.find(depth);
+  if (found != made.end()) return found->second;
+  return made.emplace(depth, move(bunny(depth), bunny_motion(depth))).first->second;
 }
 
 }  // namespace blackleaf::bench

@@ -48,5 +48,7 @@ VolumeView<std::uint8_t> view(const Volume& volume, int depth);
 
 /// 30 degrees about (1,1,1) through the universe's centre, then a translation of (5.3, -7.1, 2.9) voxels.
 Motion bunny_motion(int depth);
+/// The bunny moved by it; made once in a process.
+const Octree& moved_bunny(int depth);
 
 }  // namespace blackleaf::bench

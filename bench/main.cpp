@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   add_mesh();
   add_translate();
   add_move();
+  add_combine();
   add_interference();
   add_drawing();
   add_curve();
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   add_labels();
   add_scanline();
   add_openvdb();
+  add_openvdb_sets();
   add_octomap();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -5,7 +5,6 @@
 #include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/Prune.h>
-#include <tbb/global_control.h>
 
 #include <sstream>
 
@@ -13,6 +12,7 @@
 #include "blackleaf/measures.h"
 #include "contenders.h"
 #include "inputs.h"
+#include "peers/openvdb_grids.h"
 #include "peers/scanline.h"
 
 namespace blackleaf::bench {
@@ -23,10 +23,6 @@ using openvdb::CoordBBox;
 using openvdb::MaskGrid;
 
 constexpr int kRepetitions = 3;  // of what takes seconds
-
-tbb::global_control at_most(int threads) {
-  return {tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)};
-}
 
 // Times `make`, which returns a grid; a grid of another number of voxels than the bunny has is an error.
 template <class Make>
@@ -76,15 +72,7 @@ openvdb::BoolGrid::Ptr from_mesh(const PlacedMesh& mesh, float half_width) {
 }
 
 // The bunny as copyFromDense and prune leave it, without the volume.
-MaskGrid::Ptr bunny_grid(int depth) {
-  MaskGrid::Ptr grid = MaskGrid::create();
-  for_each_black_leaf(bunny(depth), [&](const Leaf& leaf) {
-    const Coord corner(leaf.cube.x, leaf.cube.y, leaf.cube.z);
-    grid->tree().fill(CoordBBox::createCube(corner, leaf.cube.side()), true);
-  });
-  openvdb::tools::prune(grid->tree());
-  return grid;
-}
+MaskGrid::Ptr bunny_grid(int depth) { return mask_grid(bunny(depth)); }
 
 std::size_t file_bytes(int depth) {
   openvdb::initialize();
@@ -103,6 +91,16 @@ std::int64_t wrong_in(const openvdb::BoolGrid& grid, int depth) {
 }
 
 }  // namespace
+
+MaskGrid::Ptr mask_grid(const Octree& octree) {
+  MaskGrid::Ptr grid = MaskGrid::create();
+  for_each_black_leaf(octree, [&](const Leaf& leaf) {
+    const Coord corner(leaf.cube.x, leaf.cube.y, leaf.cube.z);
+    grid->tree().fill(CoordBBox::createCube(corner, leaf.cube.side()), true);
+  });
+  openvdb::tools::prune(grid->tree());
+  return grid;
+}
 
 void add_openvdb() {
   for (const int depth : {8, 9, 10})

@@ -68,7 +68,7 @@ Extent extent_of(const Octree& octree, const FixedMotion& motion) {
   return extent;
 }
 
-TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving) {
+TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving, const LeavingWords& words) {
   TargetUniverse target{depth, {}};
   if (leaving == Leaving::clip) return target;
   const auto side = [&] { return std::int64_t{1} << (target.depth + kBits); };
@@ -85,8 +85,8 @@ TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving)
   }
   if (sides.empty()) return target;
   if (leaving == Leaving::error)
-    throw Error(ErrorCode::out_of_universe, "the moved solid leaves the universe: " + sides,
-                "move it less, clip it (--clip) or grow the universe (--grow)");
+    throw Error(ErrorCode::out_of_universe, words.solid + " leaves the universe: " + sides,
+                words.remedy + ", clip it (--clip) or grow the universe (--grow)");
   while (true) {
     bool fits = true;
     std::array<bool, 3> downward{};
@@ -97,7 +97,7 @@ TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving)
     if (fits) return target;
     if (target.depth == kMaxDepth)
       throw Error(ErrorCode::out_of_universe,
-                  "the moved solid leaves the universe even when it is grown to depth 20: " + sides, "move it less");
+                  words.solid + " leaves the universe even when it is grown to depth 20: " + sides, words.remedy);
     for (std::size_t i = 0; i < 3; ++i)
       if (downward[i]) target.offset[i] += std::int64_t{1} << target.depth;
     ++target.depth;

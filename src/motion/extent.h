@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include "blackleaf/motion.h"
 #include "blackleaf/move.h"
@@ -25,10 +26,15 @@ struct TargetUniverse {
   std::array<std::int64_t, 3> offset{};
 };
 
+/// How an error names what leaves the universe, and the first remedy.
+struct LeavingWords {
+  std::string solid = "the moved solid", remedy = "move it less";
+};
+
 /// The universe for a solid of this extent: the old one if it holds it (up to 2^-16 voxels, see move.h) or when
 /// clipping; doubled toward the sides where it is left when growing. Throws Error(out_of_universe) with the sides and
 /// by how much.
-TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving);
+TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving, const LeavingWords& words = {});
 
 /// The frame of the target universe: world coordinates stay.
 Frame grown_frame(const Frame& frame, const TargetUniverse& target);

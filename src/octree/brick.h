@@ -46,4 +46,22 @@ constexpr std::uint64_t from_curve_order(std::uint64_t bits, unsigned table) {
   return brick;
 }
 
+// Exchanges pairs of bits of the index: bits under `mask` change places with those `shift` higher.
+constexpr std::uint64_t exchange_bits(std::uint64_t bits, unsigned shift, std::uint64_t mask) {
+  const std::uint64_t t = (bits ^ bits >> shift) & mask;
+  return bits ^ t ^ t << shift;
+}
+// Bits of the index, lowest first: x0 y0 z0 x1 y1 z1 <-> x0 x1 z0 y0 y1 z1 <-> x0 x1 y0 z0 y1 z1 <-> x0 x1 y0 y1 z0 z1.
+/// The bits of a brick as rows: x fastest, then y, then z; and back.
+constexpr std::uint64_t rows_from_brick(std::uint64_t bits) {
+  bits = exchange_bits(bits, 6, 0x00CC'00CC'00CC'00CC);
+  bits = exchange_bits(bits, 4, 0x00F0'00F0'00F0'00F0);
+  return exchange_bits(bits, 8, 0x0000'FF00'0000'FF00);
+}
+constexpr std::uint64_t brick_from_rows(std::uint64_t bits) {
+  bits = exchange_bits(bits, 8, 0x0000'FF00'0000'FF00);
+  bits = exchange_bits(bits, 4, 0x00F0'00F0'00F0'00F0);
+  return exchange_bits(bits, 6, 0x00CC'00CC'00CC'00CC);
+}
+
 }  // namespace blackleaf::detail
