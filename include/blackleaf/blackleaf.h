@@ -19,6 +19,7 @@
 #include "blackleaf/moving_object.h"
 #include "blackleaf/octree.h"
 #include "blackleaf/octree_file.h"
+#include "blackleaf/offset.h"
 #include "blackleaf/points.h"
 #include "blackleaf/points_file.h"
 #include "blackleaf/runs.h"
