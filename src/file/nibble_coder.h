@@ -195,6 +195,7 @@ class NibbleDecoder {
   /// Readable bytes behind the last one, whatever they are.
   static constexpr std::size_t kPadding = 64;
 
+  NibbleDecoder() = default;
   /// Requires: kPadding more bytes can be read behind these, and all live as long as the decoder.
   explicit NibbleDecoder(std::span<const std::uint8_t> bytes) : next_(bytes.data()), end_(next_ + bytes.size()) {
     if (bytes.size() < 8 || bytes.size() % 2 != 0) throw Damage{"is too short"};
@@ -233,7 +234,7 @@ class NibbleDecoder {
   }
 
  private:
-  const std::uint8_t *next_, *end_;
+  const std::uint8_t *next_ = nullptr, *end_ = nullptr;
   std::uint32_t state_ = 0, other_ = 0;
 };
 

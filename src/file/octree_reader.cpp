@@ -24,6 +24,11 @@ using detail::NodeArrays;
 using detail::Subtree;
 using Bytes = std::vector<std::uint8_t>;
 
+void check(std::string_view name, std::size_t chunk, const std::string& problem) {
+  if (!problem.empty())
+    throw Error(ErrorCode::bad_input, fmt::format("{}: chunk {}: {}", name, chunk, problem), std::string(kDamaged));
+}
+
 // Calls read(i) for every chunk that has contents, on all threads; of several damaged chunks the first is told of.
 template <class Read>
 void read_chunks(const Header& header, std::string_view name, const Work& work, const Read& read) {
@@ -35,9 +40,7 @@ void read_chunks(const Header& header, std::string_view name, const Work& work, 
       problems[i] = damage.what;
     }
   });
-  for (std::size_t i = 0; i < problems.size(); ++i)
-    if (!problems[i].empty())
-      throw Error(ErrorCode::bad_input, fmt::format("{}: chunk {}: {}", name, i, problems[i]), std::string(kDamaged));
+  for (std::size_t i = 0; i < problems.size(); ++i) check(name, i, problems[i]);
 }
 
 class SolidReader {
@@ -46,30 +49,35 @@ class SolidReader {
 
   Octree read(std::string_view name, const Work& work) {
     collect(header_.depth, 0);
-    read_chunks(header_, name, work, [&](std::size_t i) {
-      const Bytes bytes = chunk_bytes(source_, header_.chunks[i]);
-      parts_[i].top = detail::decode_solid(bytes, std::max(2, level_), parts_[i].table, parts_[i].arrays);
-      if (header_.depth == 1 && (parts_[i].top.word >> 8 != 0 || parts_[i].top.word == 0xFF))
-        throw detail::Damage{"has voxels that are not its universe's"};
-    });
+    detail::decode_solids(parts_, std::max(2, level_), work,
+                          [&](std::size_t i) { return chunk_bytes(source_, header_.chunks[i]); });
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (header_.depth == 1 && parts_[i].damage.empty() &&
+          (parts_[i].top.word >> 8 != 0 || parts_[i].top.word == 0xFF))
+        parts_[i].damage = "has voxels that are not its universe's";
+      check(name, i, parts_[i].damage);
+    }
     NodeArrays arrays;
+    for (int level = 2; level < level_; ++level) {
+      std::size_t count = 0;
+      for (const detail::SolidPart& part : parts_) count += part.arrays.count(level);
+      arrays.reserve(level, count);
+    }
     std::size_t part = 0;
     const Subtree root = join(header_.depth, 0, part, arrays);
     return arrays.finish(header_.depth, root, header_.frame);
   }
 
  private:
-  struct Part {
-    unsigned table;
-    Subtree top;
-    NodeArrays arrays;
-  };
-
   // The tables with which the curve enters the chunks.
   void collect(int level, unsigned table) {
     if (level == level_) {
       const std::size_t i = parts_.size();
-      parts_.push_back({table, Subtree::uniform(header_.chunks[i].colour ? Colour::black : Colour::white), {}});
+      detail::SolidPart& part = parts_.emplace_back();
+      part.coded = header_.chunks[i].kind != ChunkKind::uniform;
+      part.bytes = header_.chunks[i].stored_bytes;
+      part.table = table;
+      part.top = Subtree::uniform(header_.chunks[i].colour ? Colour::black : Colour::white);
       return;
     }
     for (const curve::Step step : curve::kSteps[table]) collect(level - 1, step.table);
@@ -77,7 +85,7 @@ class SolidReader {
 
   Subtree join(int level, unsigned table, std::size_t& part, NodeArrays& arrays) {
     if (level == level_) {
-      Part& here = parts_[part++];
+      detail::SolidPart& here = parts_[part++];
       return arrays.append(here.arrays, here.top, level);
     }
     std::array<Subtree, 8> children;
@@ -89,7 +97,7 @@ class SolidReader {
   const detail::ByteSource& source_;
   const Header& header_;
   const int level_ = chunk_level(header_.depth);
-  std::vector<Part> parts_;  // one a chunk, in curve order
+  std::vector<detail::SolidPart> parts_;  // one a chunk, in curve order
 };
 
 LabelMap read_labels(const detail::ByteSource& source, std::string_view name, const Header& header, const Work& work) {

@@ -103,6 +103,8 @@ class NodeArrays {
   Subtree append(PackedBlock block);
   /// Makes room for so many more nodes of a level.
   void reserve(int level, std::size_t count);
+  /// Nodes stored of a level.
+  std::size_t count(int level) const { return levels_[static_cast<std::size_t>(level)].size(); }
 
   /// The octree with this root. Requires: `root` was made by this object; for depth 1 its word has 8 bits.
   /// Leaves the object empty.

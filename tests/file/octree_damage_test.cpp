@@ -4,6 +4,7 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <bit>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -174,6 +175,35 @@ TEST(OctreeDamage, FlipsWithChecksumsMended) {
       expect_refused_or_right(bytes, accepted);
     }
     EXPECT_GT(accepted, 100);  // frames and metadata are anyone's to choose: the test reaches past the checksums
+  }
+}
+
+// Chunks are read side by side and in another order than they stand; what is wrong with some must not rub off on the
+// others: the first that is damaged is named, whichever they are and on however many threads.
+TEST(OctreeDamage, TheFirstDamagedChunkIsNamed) {
+  std::mt19937 random(13);
+  const Bytes whole = to_bytes(ball(9, {250, 262, 249}, 41.5));
+  const std::size_t header = get<std::uint32_t>(whole, kHeaderBytesAt);
+  ASSERT_EQ(chunk_count(9), 8u);
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(i);
+    const auto damaged = static_cast<unsigned>(1 + random() % 255);
+    Bytes bytes = whole;
+    std::size_t at = header;
+    for (unsigned chunk = 0; chunk < 8; ++chunk) {
+      const std::size_t entry = kTable + chunk * entry_bytes(kVersion);
+      const std::uint64_t size = get<std::uint64_t>(whole, entry) & 0xFFFFFFFF;
+      ASSERT_GT(size, 100u);
+      if (damaged >> chunk & 1) {
+        bytes[at + random() % size] ^= static_cast<std::uint8_t>(1 + random() % 255);
+        put(bytes, entry + 8, std::uint64_t{XXH3_64bits(bytes.data() + at, size)});
+      }
+      at += size;
+    }
+    reseal(bytes);
+    const std::string name = "some.octree: chunk " + std::to_string(std::countr_zero(damaged)) + ": ";
+    for (const int threads : {1, 2, 3})
+      expect_error(ErrorCode::bad_input, {name}, [&] { from_bytes(bytes, "some.octree", Work{threads, {}}); });
   }
 }
 
