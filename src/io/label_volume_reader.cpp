@@ -20,7 +20,6 @@
 namespace blackleaf {
 namespace {
 
-using detail::Component;
 
 // One volume on its way from the file to the label map.
 class LabelVolumeJob {
