@@ -44,21 +44,20 @@ std::uint64_t volume_of(const Node& node) {
   return sum;
 }
 
-// Extends the box by the black voxels of a node; nodes inside the box already known have nothing to add.
-void extend(const Node& node, const Cube& cube, Box& box) {
-  if (node.is_white()) return;
-  const std::array<std::int32_t, 3> low = {cube.x, cube.y, cube.z};
-  bool known = true;
-  for (std::size_t i = 0; i < 3; ++i) known = known && box.min[i] <= low[i] && low[i] + cube.side() <= box.max[i];
-  if (known) return;
+// How far the black voxels of a node reach along an axis, up or down, if that is farther than `farthest`: branch and
+// bound, the nearer half of a node first. `sign` is 1 for up and -1 for down; what is compared is sign * coordinate.
+void reach(const Node& node, const Cube& cube, unsigned axis, std::int32_t sign, std::int32_t& farthest) {
+  const std::int32_t low = axis == 0 ? cube.x : axis == 1 ? cube.y : cube.z;
+  const std::int32_t end = sign > 0 ? low + cube.side() : -low;
+  if (node.is_white() || end <= farthest) return;
   if (node.is_black()) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      box.min[i] = std::min(box.min[i], low[i]);
-      box.max[i] = std::max(box.max[i], low[i] + cube.side());
-    }
+    farthest = end;
     return;
   }
-  for (int octant = 0; octant < 8; ++octant) extend(node.child(octant), cube.child(octant), box);
+  const int nearer = sign > 0 ? 1 << axis : 0;
+  for (const int half : {nearer, nearer ^ 1 << axis})
+    for (int octant = 0; octant < 8; ++octant)
+      if ((octant & 1 << axis) == half) reach(node.child(octant), cube.child(octant), axis, sign, farthest);
 }
 
 // Twice the sum of the black voxels' centres.
@@ -117,9 +116,14 @@ std::uint64_t volume(const Octree& octree) { return volume_of(octree.root()); }
 
 std::optional<Box> bounding_box(const Octree& octree) {
   if (octree.is_empty()) return std::nullopt;
-  const std::int32_t side = octree.side();
-  Box box{{side, side, side}, {0, 0, 0}};
-  extend(octree.root(), octree.universe(), box);
+  Box box;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    std::int32_t up = 0, down = -octree.side();
+    reach(octree.root(), octree.universe(), axis, 1, up);
+    reach(octree.root(), octree.universe(), axis, -1, down);
+    box.max[axis] = up;
+    box.min[axis] = -down;
+  }
   return box;
 }
 

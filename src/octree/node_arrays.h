@@ -83,7 +83,7 @@ class NodeArrays {
     if (gray == 0 && (black == 0 || black == 0xFF)) return Subtree::uniform(black ? Colour::black : Colour::white);
     auto& below = levels_[static_cast<std::size_t>(level - 1)];
     const std::uint64_t first = gray ? below.size() : 0;
-    for (const std::uint64_t word : words) below.push_back(word);
+    below.insert(below.end(), words.begin(), words.end());
     return {black | gray << 8 | first << 16, Colour::gray};
   }
 

@@ -19,7 +19,11 @@
 //     Subtree subtree(Task&, const Cube&, std::uint8_t table, NodeArrays&) const;  // all of a node
 //
 // which is then asked instead of all others for every node below the top three levels, and must make its nodes in the
-// order of the Millar curve, which enters the node with `table`.
+// order of the Millar curve, which enters the node with `table`. A producer that can guess how many nodes there will be
+// has
+//
+//     void reserve(NodeArrays&) const;  // makes room for them
+//
 //
 // Its functions are called from many threads. In a universe of depth 1 the root is asked for as a brick whose octant 0
 // is the universe; what it says of the other voxels is ignored (classify must then not answer black unless octant 0 is
@@ -77,6 +81,7 @@ class Production {
       if (depth_ == 1) top = byte(top);
     } else {
       outline(producer_.root(), root, 0);
+      if constexpr (requires { producer_.reserve(arrays); }) producer_.reserve(arrays);
       if (thread_count(work_) == 1) {
         // No need for arrays of their own: one thread walks the curve.
         for_each_index(stretches_.size(), work_, [&](std::size_t i) { produce(stretches_[i], arrays); });

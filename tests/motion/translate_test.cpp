@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include "blackleaf/error.h"
+#include "blackleaf/leaves.h"
 #include "blackleaf/move.h"
+#include "blackleaf/set_operations.h"
+#include "motion/centre_kernel.h"
 #include "reference/dense_motion.h"
 
 namespace blackleaf {
@@ -34,6 +37,73 @@ TEST(Translate, AgreesWithTheDenseGrid) {
     } else {
       ASSERT_THROW(translate(octree, by), Error);
     }
+  }
+}
+
+TEST(Translate, LargerUniversesWithEveryKernel) {
+  std::mt19937 random(6);
+  for (int trial = 0; trial < 80; ++trial) {
+    SCOPED_TRACE(trial);
+    const int depth = 6 + trial % 2;
+    const DenseGrid grid = reference::random_solid(depth, random);
+    Shift by = random_shift(depth, random);
+    if (trial % 3 == 0)  // multiples of powers of two, not the same on every axis
+      for (std::int64_t& part : by) part = part / 4 * (std::int64_t{1} << random() % 5);
+    const Octree octree = reference::octree(grid), expected = reference::octree(reference::translate(grid, by));
+    for (const std::string& kernel : detail::centre_kernels()) {
+      SCOPED_TRACE(kernel);
+      detail::use_centre_kernel(kernel);
+      for (const int threads : {1, 2, 3, 7}) {
+        const Octree moved = translate(octree, by, Leaving::clip, {.threads = threads, .progress = {}});
+        ASSERT_TRUE(moved == expected);
+      }
+    }
+  }
+  detail::use_centre_kernel("");
+}
+
+TEST(Translate, PowersOfTwoKeepTheTree) {
+  // AN84: leaves not larger than the displacement's lowest set bit stay whole.
+  const Octree octree = unite(ball(9, {130, 140, 150}, 101), box(9, {3, 5, 7}, {60, 61, 62}));
+  for (const int level : {0, 1, 2, 3, 4, 5, 6, 7}) {
+    SCOPED_TRACE(level);
+    const std::int64_t by = std::int64_t{1} << level;
+    const Octree moved = translate(octree, {by, 2 * by % 256, 0});
+    reference::expect_valid(moved);
+    EXPECT_TRUE(translate(moved, {-by, -(2 * by % 256), 0}) == octree);
+    const auto before = measure(octree).black_leaves_by_level, after = measure(moved).black_leaves_by_level;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(level); ++k) EXPECT_EQ(after[k], before[k]) << "level " << k;
+  }
+  EXPECT_EQ(translate(octree, {0, 0, 0}).root().word(), octree.root().word());
+}
+
+TEST(Translate, SparseSolidsInDeepUniverses) {
+  std::mt19937 random(14);
+  for (int trial = 0; trial < 40; ++trial) {
+    SCOPED_TRACE(trial);
+    const int depth = 14 + trial % 7;
+    const std::int32_t n = 1 << depth;
+    const auto any = [&](std::int32_t low, std::int32_t high) {
+      return std::uniform_int_distribution<std::int32_t>(low, high)(random);
+    };
+    Octree octree(depth);
+    for (int part = 0; part < 4; ++part) {
+      const std::array<std::int32_t, 3> low = {any(0, n - 40), any(0, n - 40), any(0, n - 40)};
+      octree = unite(octree, box(depth, low, {low[0] + any(1, 40), low[1] + any(1, 40), low[2] + any(1, 40)}));
+    }
+    const Shift by = {any(-n, n), any(-n, n) / 64 * 64, any(-5, 5)};
+    const Octree moved = translate(octree, by, Leaving::clip);
+    reference::expect_valid(moved);
+    for_each_black_leaf(octree, [&](const Leaf& leaf) {
+      const Cube& c = leaf.cube;
+      for (const std::int32_t end : {0, c.side() - 1}) {
+        const std::int64_t x = c.x + end + by[0], y = c.y + end + by[1], z = c.z + end + by[2];
+        const bool inside = std::min({x, y, z}) >= 0 && std::max({x, y, z}) < n;
+        ASSERT_EQ(moved.contains(x, y, z), inside);
+      }
+    });
+    EXPECT_LE(volume(moved), volume(octree));
+    EXPECT_EQ(volume(translate(octree, by, Leaving::grow).with_frame({})), volume(octree));
   }
 }
 
