@@ -10,6 +10,7 @@
 #include "blackleaf/implicit.h"
 #include "blackleaf/label_map.h"
 #include "blackleaf/label_voxels.h"
+#include "blackleaf/lattice.h"
 #include "blackleaf/leaves.h"
 #include "blackleaf/measures.h"
 #include "blackleaf/mesh.h"

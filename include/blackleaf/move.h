@@ -25,7 +25,8 @@ Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Le
 /// The solid moved by X' = RX + T: a target voxel is black iff its centre, moved back by FixedMotion, lies in the
 /// closed solid. Exact, and the same for every thread count. A solid leaves the universe when a corner of a moved black
 /// cube lies outside by more than 2^-16 voxels (no voxel centre is then lost). O(surface of source and target) (WA87,
-/// sections 3 and 4).
+/// sections 3 and 4); quarter turns and translations that leave centres off the faces of voxels are done by relabelling
+/// and shifting, with the same result (lattice.h).
 Octree move(const Octree& octree, const Motion& motion, Leaving leaving = Leaving::error, const Work& work = {});
 
 }  // namespace blackleaf
