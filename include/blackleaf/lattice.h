@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "blackleaf/label_map.h"
 #include "blackleaf/move.h"
 #include "blackleaf/octree.h"
 #include "blackleaf/work.h"
@@ -97,13 +98,21 @@ Octree transform(const Octree& octree, const LatticeSymmetry& symmetry, const Wo
 Octree transform(const Octree& octree, const LatticeSymmetry& symmetry, const Eigen::Vector3d& about,
                  Leaving leaving = Leaving::error, const Work& work = {});
 
-/// The solid turned by quarters of 90 degrees about the axis 0, 1 or 2 through the universe's centre, right-handed.
-inline Octree turn(const Octree& octree, int axis, int quarters = 1, const Work& work = {}) {
-  return transform(octree, LatticeSymmetry::turn(axis, quarters), work);
+/// The same with all labels at once. O(runs * depth).
+LabelMap transform(const LabelMap& map, const LatticeSymmetry& symmetry, const Work& work = {});
+LabelMap transform(const LabelMap& map, const LatticeSymmetry& symmetry, const Eigen::Vector3d& about,
+                   Leaving leaving = Leaving::error, const Work& work = {});
+
+/// A solid or a label map turned by quarters of 90 degrees about the axis 0, 1 or 2 through the universe's centre,
+/// right-handed.
+template <class Solid>
+Solid turn(const Solid& solid, int axis, int quarters = 1, const Work& work = {}) {
+  return transform(solid, LatticeSymmetry::turn(axis, quarters), work);
 }
-/// The mirror image of the solid along the axis 0, 1 or 2 about the universe's centre.
-inline Octree reflect(const Octree& octree, int axis, const Work& work = {}) {
-  return transform(octree, LatticeSymmetry::reflection(axis), work);
+/// Its mirror image along the axis 0, 1 or 2 about the universe's centre.
+template <class Solid>
+Solid reflect(const Solid& solid, int axis, const Work& work = {}) {
+  return transform(solid, LatticeSymmetry::reflection(axis), work);
 }
 
 }  // namespace blackleaf

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "blackleaf/label_map.h"
 #include "blackleaf/motion.h"
 #include "blackleaf/octree.h"
 #include "blackleaf/work.h"
@@ -21,6 +22,10 @@ enum class Leaving {
 /// depth 20 is too small, always. O(words of source and target) (AN84, section 3).
 Octree translate(const Octree& octree, const std::array<std::int64_t, 3>& by, Leaving leaving = Leaving::error,
                  const Work& work = {});
+/// The same with all labels at once; what leaves the universe is what has a label other than 0, and 0 comes in.
+/// O(runs of source and target * depth).
+LabelMap translate(const LabelMap& map, const std::array<std::int64_t, 3>& by, Leaving leaving = Leaving::error,
+                   const Work& work = {});
 
 /// The solid moved by X' = RX + T: a target voxel is black iff its centre, moved back by FixedMotion, lies in the
 /// closed solid. Exact, and the same for every thread count. A solid leaves the universe when a corner of a moved black

@@ -1,5 +1,7 @@
 #include "blackleaf/lattice.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 
@@ -77,6 +79,22 @@ std::optional<LatticeMove> lattice_move(const FixedMotion& motion, int depth) {
   return result;
 }
 
+std::array<std::int64_t, 3> shift_after(const LatticeSymmetry& symmetry, const Eigen::Vector3d& about, int depth) {
+  const Eigen::Vector3d from_centre = about - Eigen::Vector3d::Constant(std::exp2(depth - 1));
+  const Eigen::Vector3d by = from_centre - symmetry.matrix() * from_centre;
+  std::array<std::int64_t, 3> shift{};
+  for (int i = 0; i < 3; ++i) {
+    constexpr double kFar = 0x1p40;  // out of every universe, and whole
+    if (std::isnan(by[i]) || (by[i] != std::round(by[i]) && std::abs(by[i]) < kFar))
+      throw Error(ErrorCode::bad_argument,
+                  "that turn or reflection about " + std::to_string(about.x()) + "," + std::to_string(about.y()) + "," +
+                      std::to_string(about.z()) + " does not take voxels to voxels",
+                  "do it about a corner or the centre of a voxel");
+    shift[static_cast<std::size_t>(i)] = static_cast<std::int64_t>(std::clamp(by[i], -kFar, kFar));
+  }
+  return shift;
+}
+
 Octree moved(const Octree& octree, const LatticeMove& move, int depth, const Frame& frame, const Work& work) {
   const bool turns = !(move.symmetry == LatticeSymmetry());
   const bool shifts = move.by != std::array<std::int64_t, 3>{} || depth != octree.depth();
@@ -134,19 +152,8 @@ Octree transform(const Octree& octree, const LatticeSymmetry& symmetry, const Wo
 
 Octree transform(const Octree& octree, const LatticeSymmetry& symmetry, const Eigen::Vector3d& about, Leaving leaving,
                  const Work& work) {
-  const Eigen::Vector3d from_centre = about - Eigen::Vector3d::Constant(octree.side() / 2.0);
-  const Eigen::Vector3d by = from_centre - symmetry.matrix() * from_centre;
-  std::array<std::int64_t, 3> shift{};
-  for (int i = 0; i < 3; ++i) {
-    constexpr double kFar = 0x1p40;  // out of every universe, and whole
-    if (std::isnan(by[i]) || (by[i] != std::round(by[i]) && std::abs(by[i]) < kFar))
-      throw Error(ErrorCode::bad_argument,
-                  "that turn or reflection about " + std::to_string(about.x()) + "," + std::to_string(about.y()) + "," +
-                      std::to_string(about.z()) + " does not take voxels to voxels",
-                  "do it about a corner or the centre of a voxel");
-    shift[static_cast<std::size_t>(i)] = static_cast<std::int64_t>(std::clamp(by[i], -kFar, kFar));
-  }
-  return translate(transform(octree, symmetry, detail::part_of(work, 0, 0.5)), shift, leaving,
+  const auto by = detail::shift_after(symmetry, about, octree.depth());
+  return translate(transform(octree, symmetry, detail::part_of(work, 0, 0.5)), by, leaving,
                    detail::part_of(work, 0.5, 1));
 }
 

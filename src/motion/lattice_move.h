@@ -22,6 +22,10 @@ struct LatticeMove {
 /// voxel centre then lies inside a voxel, the one from which the nearest whole shift takes it.
 std::optional<LatticeMove> lattice_move(const FixedMotion& motion, int depth);
 
+/// The shift that makes a symmetry about the centre of a universe of the given depth one about another point. Throws
+/// Error(bad_argument) unless it is whole.
+std::array<std::int64_t, 3> shift_after(const LatticeSymmetry& symmetry, const Eigen::Vector3d& about, int depth);
+
 /// The solid moved into the universe of `target`, which may only be larger than the source's by growing, with `offset`
 /// already in `move.by`. What is outside is dropped.
 Octree moved(const Octree& octree, const LatticeMove& move, int depth, const Frame& frame, const Work& work);
