@@ -106,6 +106,9 @@ void refuse_options(const BuildOptions& o, Kind kind) {
       throw Error(ErrorCode::bad_argument,
                   fmt::format("{} does not apply to '{}', which is {}", option.name, o.input, name_of(kind)),
                   "leave it out");
+  if (o.clip && !o.like)
+    throw Error(ErrorCode::bad_argument, "--clip is given without --like, but only then can points lie outside",
+                "leave it out");
 }
 
 }  // namespace

@@ -48,6 +48,8 @@ template <class Options>
 void take_volume_options(const Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts,
                          Options& options) {
   if (o.series) {
+    if (o.series->empty())
+      throw Error(ErrorCode::bad_argument, "--series is empty", "give the UID of a series, or how it ends");
     options.series = *o.series;
     facts["series"] = *o.series;
   }

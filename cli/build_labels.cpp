@@ -21,16 +21,13 @@ LabelMap from_volume(Session& session, const BuildOptions& o, const std::optiona
     facts["labels"] = true;
   }
   take_volume_options(session, o, like, facts, options);
+  if (like) {
+    options.frame = like->frame();
+    facts["like"] = base_name(*o.like);
+  }
   LabelMap labels = session.stage("build", [&](const Work& work) { return read_label_volume(o.input, options, work); });
   facts["depth"] = labels.depth();
-  if (!like) return labels;
-  facts["like"] = base_name(*o.like);
-  if (!labels.frame().same_as(like->frame()))
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("the voxels of '{}' are not those of '{}', from the universe's corner on", o.input, *o.like),
-        "leave --like out: labels are neither shifted nor resampled");
-  return labels.with_frame(like->frame());
+  return labels;
 }
 
 }  // namespace

@@ -44,13 +44,16 @@ std::string count(std::uint64_t n, const char* one, const char* many) {
 std::string faults(const MeshSolid& solid) {
   std::vector<std::string> found;
   const MeshReport& report = solid.found;
-  if (report.open_edges > 0) found.push_back(count(report.open_edges, "open edge", "open edges"));
+  if (const std::uint64_t open = report.open_edges - report.doubled_edges)
+    found.push_back(count(open, "open edge", "open edges"));
   if (const std::uint64_t between = report.misoriented_edges - report.open_edges)
     found.push_back(
         count(between, "edge whose triangles face different ways", "edges whose triangles face different ways"));
   if (solid.one_sided_parts > 0) found.push_back(count(solid.one_sided_parts, "one-sided part", "one-sided parts"));
   if (solid.overlaps) found.push_back("surfaces that overlap or pass through each other");
-  if (found.empty()) return "";
+  if (found.empty() && report.doubled_edges == 0) return "";
+  if (report.doubled_triangles > 0)
+    found.insert(found.begin(), count(report.doubled_triangles, "doubled triangle", "doubled triangles"));
   if (report.non_manifold_edges > 0)
     found.push_back(count(report.non_manifold_edges, "non-manifold edge", "non-manifold edges"));
   found.push_back(count(report.components, "component", "components"));
@@ -60,17 +63,24 @@ std::string faults(const MeshSolid& solid) {
   return fmt::format("{}; {}", fmt::join(found, ", "), done);
 }
 
-// A mesh thinner than the voxels, at whatever depth was asked for, is more likely a mistake than an empty solid.
-void refuse_if_missed(const std::string& input, const TriangleMesh& mesh, const MeshPlacement& placement) {
+// An empty octree of a mesh that bounds something is more likely a mistake than what was meant. What it bounds, if
+// anything, is not asked of open meshes, nor of those whose surfaces cancel; warnings tell of these.
+void refuse_if_missed(const std::string& input, const TriangleMesh& mesh, const MeshPlacement& placement,
+                      const MeshReport& found) {
   Eigen::AlignedBox3d box;
   const Eigen::Matrix3d to_voxels = placement.frame.axes.inverse();
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t v : triangle) box.extend(to_voxels * (mesh.vertices[v] - placement.frame.origin));
   const Eigen::Vector3d size = box.sizes();
-  if (size.minCoeff() >= 1) return;
+  const bool thin = size.minCoeff() < 1;
+  if (!thin && (!found.closed() || found.doubled_triangles > 0)) return;
+  const std::string of = found.components == 1 ? "it" : fmt::format("any of its {} parts", found.components);
   throw Error(ErrorCode::bad_input,
-              fmt::format("{}: no voxel's centre is inside: the mesh is {:.4g} x {:.4g} x {:.4g} voxels", input,
-                          size.x(), size.y(), size.z()),
+              fmt::format("{}: no voxel's centre is inside {}: the mesh is {:.4g} x {:.4g} x {:.4g} voxels{}", input,
+                          of, size.x(), size.y(), size.z(),
+                          thin                    ? ""
+                          : found.components == 1 ? ", but thinner than one everywhere"
+                                                  : ", and its parts are thinner than one or far apart"),
               "use smaller voxels or a greater depth, or take every voxel that it touches (--rule touched)");
 }
 
@@ -139,8 +149,8 @@ Octree build_mesh(Session& session, const BuildOptions& o, const std::optional<O
     return naming(o.input, [&] { return solid_from_mesh(mesh, placement, options, work); });
   });
   if (solid.octree.is_empty()) {
-    refuse_if_missed(o.input, mesh, placement);
-    if (solid.found.closed() && solid.found.non_manifold_edges > 0)
+    refuse_if_missed(o.input, mesh, placement, solid.found);
+    if (solid.found.closed() && solid.found.doubled_triangles > 0)
       session.warn(o.input +
                    ": its surfaces cancel each other, as when every triangle is there a second time, turned " +
                    "over; remove the doubles");

@@ -1,9 +1,6 @@
 // blackleaf build: voxel volumes.
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <cmath>
-
 #include "blackleaf/move.h"
 #include "blackleaf/volume_file.h"
 #include "build.h"
@@ -15,20 +12,12 @@ namespace {
 
 // The octree in another universe, when the two differ by a shift of whole voxels.
 Octree placed_in(const Octree& octree, const Octree& universe, const std::string& input, const std::string& like) {
-  const Frame& from = octree.frame();
-  const Frame& to = universe.frame();
-  const Eigen::Vector3d corner = to.axes.fullPivLu().solve(from.origin - to.origin);
-  const Eigen::Vector3d whole = corner.array().round();
-  // Geometry in file headers is rounded; what is left of a voxel after that must be far below one.
-  constexpr double kTolerance = 1e-3;
-  const bool fits = (corner - whole).cwiseAbs().maxCoeff() <= kTolerance && whole.cwiseAbs().maxCoeff() < 0x1p40 &&
-                    Frame{to.origin, from.axes, from.unit}.same_as(to);
-  if (!fits)
+  const auto by = whole_shift(octree.frame(), universe.frame());
+  if (!by)
     throw Error(ErrorCode::bad_input,
                 fmt::format("the voxels of '{}' are not those of '{}' shifted by whole voxels", input, like),
                 "leave --like out, or resample the volume");
-  const std::array<std::int64_t, 3> by = {std::llround(whole[0]), std::llround(whole[1]), std::llround(whole[2])};
-  return translate(octree, by).with_frame(to);
+  return translate(octree, *by).with_frame(universe.frame());
 }
 
 }  // namespace

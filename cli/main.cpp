@@ -66,6 +66,7 @@ int run(const std::vector<std::string>& arguments) {
     if (name != command.name) continue;
     Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()});
     const int code = command.run(session);
+    session.print_remarks();
     session.print_timings();
     return code;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -42,6 +43,37 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   throw Error(ErrorCode::bad_argument, fmt::format("{} is '{}', which is not {}", option, text, what), remedy);
 }
 
+// Whether the number that a text writes is the double that was made of it. Only whole numbers beyond 2^53 are looked
+// at: below, a double is as near as anybody can ask for; beyond, it may be another whole number.
+bool is_itself(std::string_view text, double value) {
+  if (std::abs(value) < 0x1p53) return true;
+  if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
+  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  const std::string_view mantissa = text.substr(0, e);
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  std::string digits(mantissa.substr(0, point));
+  digits += mantissa.substr(std::min(point + 1, mantissa.size()));
+  // A finite value has at most 309 digits ahead of its point, so the exponent fits whatever the mantissa's length.
+  auto ahead = static_cast<std::int64_t>(point);
+  if (e < text.size()) ahead += number_in<std::int64_t>(text.substr(e + 1)).value_or(0);
+  while (static_cast<std::int64_t>(digits.size()) < ahead) digits += '0';
+  const auto split = digits.begin() + static_cast<std::ptrdiff_t>(std::max<std::int64_t>(ahead, 0));
+  if (std::any_of(split, digits.end(), [](char c) { return c != '0'; })) return false;
+  digits.erase(split, digits.end());
+  digits.erase(0, std::min(digits.find_first_not_of('0'), digits.size()));
+  return digits == fmt::format("{:.0f}", std::abs(value));
+}
+
+// A bound of values, finite and kept exactly.
+std::optional<double> bound_in(const std::string& option, std::string_view text) {
+  const auto value = finite_in(text);
+  if (value && !is_itself(text, *value))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} has {}, a number beyond 2^53 that is not kept exactly", option, text),
+                fmt::format("the nearest that is: {:.0f}", *value));
+  return value;
+}
+
 }  // namespace
 
 double parse_number(const std::string& option, const std::string& text) {
@@ -74,7 +106,7 @@ Eigen::Vector3d parse_vector(const std::string& option, const std::string& text)
 std::vector<double> parse_numbers(const std::string& option, const std::string& text) {
   std::vector<double> numbers;
   for (const std::string_view part : split(text, ',')) {
-    const auto value = finite_in(part);
+    const auto value = bound_in(option, part);
     if (!value) refuse(option, text, "a list of finite numbers", "write a,b,... without spaces, like -200,100,300");
     numbers.push_back(*value);
   }
@@ -108,8 +140,10 @@ Range parse_range(const std::string& option, const std::string& text) {
   const auto sides = split(text, ':');
   if (sides.size() != 2 || (sides[0].empty() && sides[1].empty())) refuse(option, text, "a range", form);
   Range range;
-  if (!sides[0].empty() && !(range.low = finite_in(sides[0]))) refuse(option, text, "a range of finite numbers", form);
-  if (!sides[1].empty() && !(range.high = finite_in(sides[1]))) refuse(option, text, "a range of finite numbers", form);
+  if (!sides[0].empty() && !(range.low = bound_in(option, sides[0])))
+    refuse(option, text, "a range of finite numbers", form);
+  if (!sides[1].empty() && !(range.high = bound_in(option, sides[1])))
+    refuse(option, text, "a range of finite numbers", form);
   if (range.low && range.high && *range.low > *range.high)
     refuse(option, text, "a range: its low end is above its high end", "swap the two");
   return range;

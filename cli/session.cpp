@@ -126,12 +126,13 @@ bool Session::parse() {
               fmt::format("see blackleaf {} --help", command_));
 }
 
-void Session::warn(const std::string& message) const {
-  if (!quiet_) fmt::print(stderr, "blackleaf: warning: {}\n", message);
-}
+void Session::warn(const std::string& message) const { remarks_.push_back("warning: " + message); }
 
-void Session::note(const std::string& message) const {
-  if (!quiet_) fmt::print(stderr, "blackleaf: note: {}\n", message);
+void Session::note(const std::string& message) const { remarks_.push_back("note: " + message); }
+
+void Session::print_remarks() const {
+  if (quiet_) return;
+  for (const std::string& remark : remarks_) print_message(remark);
 }
 
 void Session::print_timings() const {
@@ -172,6 +173,12 @@ void print_out(const std::string& text) {
 }
 
 bool printed() { return printed_something; }
+
+void print_message(std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  fmt::print(stderr, "blackleaf: {}\n", message);
+}
 
 void print_out(const Json& object) { print_out(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"); }
 

@@ -59,9 +59,11 @@ class Session {
     return std::forward<Function>(function)();
   }
 
-  /// One line on standard error, not under --quiet: of what may be a mistake; of what is only good to know.
+  /// One line on standard error, not under --quiet: of what may be a mistake; of what is only good to know. Held back
+  /// until the command is done: an error stands alone.
   void warn(const std::string& message) const;
   void note(const std::string& message) const;
+  void print_remarks() const;
   /// Prints --timings, if asked for.
   void print_timings() const;
 
@@ -92,6 +94,7 @@ class Session {
   std::shared_ptr<void> thread_limit_;  // TBB's, for as long as the session lives
   bool json_ = false, quiet_ = false, timings_ = false;
   Clock::time_point start_ = Clock::now();
+  mutable std::vector<std::string> remarks_;             // what warn() and note() were told
   std::vector<std::pair<std::string, double>> seconds_;  // by stage, in order of first use
 };
 
@@ -99,6 +102,8 @@ class Session {
 void print_out(const std::string& text);
 /// True iff anything went that way.
 bool printed();
+/// A message on standard error: one line, even where file names in it hold line breaks.
+void print_message(std::string message);
 /// The object on one line.
 void print_out(const Json& object);
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace blackleaf {
@@ -24,5 +27,10 @@ struct Frame {
 
   friend bool operator==(const Frame&, const Frame&) = default;
 };
+
+/// Where voxel (0,0,0) of a universe in frame `from` lies in frame `to`, in whole voxels: the same place of the world
+/// is p there and p + shift here. None unless the axes and the unit are the same and the shift is one of whole voxels,
+/// up to the rounding of file headers (1e-3 voxels), of less than 2^40.
+std::optional<std::array<std::int64_t, 3>> whole_shift(const Frame& from, const Frame& to);
 
 }  // namespace blackleaf

@@ -43,6 +43,8 @@ struct MeshReport {
   std::uint64_t non_manifold_edges = 0;    // edges of more than two triangles
   std::uint64_t misoriented_edges = 0;     // edges passed unequally often in the two directions
   std::uint64_t components = 0;            // connected through shared vertices
+  std::uint64_t doubled_triangles = 0;     // with the corners of an earlier one, turned or not
+  std::uint64_t doubled_edges = 0;         // open edges that would not be open without the doubled triangles
   bool closed() const { return open_edges == 0; }
 };
 /// A triangle with two equal corners has no edges here; one whose three corners lie on a line has its three. Throws
@@ -61,10 +63,11 @@ enum class MeshRule {
 /// arithmetic. A centre that lies exactly on the surface counts as if it were moved by an infinitesimal (e, e^2, e^3)
 /// in universe coordinates, so solids that share a face share no voxel and axis-aligned boxes come out exact. The frame
 /// may be oblique and left-handed; either orientation of the whole surface is accepted. Throws Error(bad_input) for a
-/// mesh that is not closed (with the number of open edges), is oriented inconsistently, or passes through itself where
-/// a voxel centre shows it (winding numbers other than 0 and 1), Error(out_of_universe) when it does not fit the
-/// universe, Error(bad_argument) for a depth outside 1..20 or axes that do not span space. O(surface voxels log(surface
-/// voxels) + triangles) time, O(surface voxels + triangles) memory.
+/// mesh whose triangles all have no area on that grid (not under MeshRule::touched), for one that is not closed (with
+/// the number of open edges), is oriented inconsistently, or passes through itself where a voxel centre shows it
+/// (winding numbers other than 0 and 1), Error(out_of_universe) when it does not fit the universe, Error(bad_argument)
+/// for a depth outside 1..20 or axes that do not span space. O(surface voxels log(surface voxels) + triangles) time,
+/// O(surface voxels + triangles) memory.
 Octree octree_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placement, MeshRule rule = MeshRule::centre,
                         const Work& work = {});
 

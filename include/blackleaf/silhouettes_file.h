@@ -30,8 +30,9 @@ struct SilhouetteSet {
 SilhouetteSet read_silhouettes(const std::filesystem::path& path, std::optional<int> depth = {});
 
 /// Reads one PNG image into width, height and pixels; the rest is left as it is. Where the image has an alpha channel
-/// that is not opaque throughout, what is at least half opaque is object, else what is brighter than half. Throws as
-/// above; images of 2^28 pixels or more are refused.
+/// that is not opaque throughout, what is at least half opaque is object, else what is brighter than half, by the
+/// values in the file: gamma and colour profiles are not applied. Throws as above; images of 2^28 pixels or more are
+/// refused.
 void read_silhouette_image(const std::filesystem::path& path, Silhouette& silhouette);
 
 }  // namespace blackleaf

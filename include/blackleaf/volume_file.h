@@ -47,6 +47,9 @@ Octree read_volume(const std::filesystem::path& path, const VolumeOptions& optio
 
 struct LabelVolumeOptions {
   std::optional<Bands> bands = {};  // without them the values themselves are the labels
+  /// The frame of the universe, with `depth` its depth: the volume must lie on its voxels, shifted by whole ones, and
+  /// what reaches beyond it must have label 0, else Error(bad_input). Without it the volume lies as `centre` says.
+  std::optional<Frame> frame = {};
   /// As in VolumeOptions.
   int depth = 0;
   bool centre = false;

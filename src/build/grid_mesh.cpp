@@ -66,6 +66,11 @@ MeshReport GridMesh::report(bool components) const {
 }
 
 void require_closed(const MeshReport& report, bool oriented) {
+  if (report.open_edges > 0 && report.doubled_edges == report.open_edges)
+    throw Error(ErrorCode::bad_input,
+                "the mesh has " + std::to_string(report.doubled_triangles) +
+                    (report.doubled_triangles == 1 ? " triangle" : " triangles") + " that it has before",
+                "remove the doubles");
   if (report.open_edges > 0)
     throw Error(ErrorCode::bad_input,
                 "the mesh is not closed: it has " + std::to_string(report.open_edges) +

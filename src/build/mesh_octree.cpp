@@ -21,10 +21,29 @@ Octree with_surface(const Octree& inside, const detail::GridMesh& grid, MeshRule
   return detail::with_touched(inside, grid, detail::part_of(work, 0.5, 1));
 }
 
+// How many of the triangles have no area on the grid. A mesh of these alone bounds nothing, which is an error, unless its
+// surface is asked for and it has any.
+std::uint64_t without_area(const TriangleMesh& mesh, const detail::GridMesh& grid, MeshRule rule) {
+  std::uint64_t count = mesh.triangles.size() - grid.triangles.size();
+  for (const detail::Triangle& t : grid.triangles) {
+    bool flat = true;
+    for (std::size_t i = 0; i < 3; ++i)
+      flat = flat && detail::normal(grid.vertices[t[0]], grid.vertices[t[1]], grid.vertices[t[2]], i) == 0;
+    count += flat;
+  }
+  if (count == mesh.triangles.size() && (rule == MeshRule::centre || grid.triangles.empty()))
+    throw Error(
+        ErrorCode::bad_input,
+        count == 1 ? "its one triangle has no area" : "none of its " + std::to_string(count) + " triangles has an area",
+        "give a surface that bounds a solid");
+  return count;
+}
+
 }  // namespace
 
 Octree octree_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placement, MeshRule rule, const Work& work) {
   const detail::GridMesh grid = detail::grid_mesh(mesh, placement);
+  without_area(mesh, grid, rule);
   detail::require_closed(grid.report(false), true);
   const Work part = inside_part(work, rule);
   const detail::Slabs slabs = detail::slabs_of(grid, {}, detail::part_of(part, 0, 0.6));
@@ -40,13 +59,7 @@ MeshSolid solid_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placeme
   MeshSolid solid;
   solid.found = grid.report(true);
   solid.found.triangles = mesh.triangles.size();
-  solid.found.degenerate_triangles = mesh.triangles.size() - grid.triangles.size();
-  for (const detail::Triangle& t : grid.triangles) {
-    bool flat = true;
-    for (std::size_t i = 0; i < 3; ++i)
-      flat = flat && detail::normal(grid.vertices[t[0]], grid.vertices[t[1]], grid.vertices[t[2]], i) == 0;
-    solid.found.degenerate_triangles += flat;
-  }
+  solid.found.degenerate_triangles = without_area(mesh, grid, options.rule);
   const Work part = inside_part(work, options.rule);
   const bool parity = options.inside == Inside::parity;
   if (parity) detail::require_closed(solid.found, false);

@@ -1,10 +1,12 @@
 // Universes for meshes.
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "blackleaf/error.h"
 #include "blackleaf/mesh.h"
+#include "rounded_up.h"
 #include "surface.h"
 
 namespace blackleaf {
@@ -78,16 +80,18 @@ MeshPlacement place_by_voxel_size(const TriangleMesh& mesh, double voxel_size, i
   if (!(voxel_size > 0) || !std::isfinite(voxel_size))
     throw Error(ErrorCode::bad_argument, "voxel size " + text(voxel_size) + " is out of range",
                 "use a finite size above 0");
-  require_volume(voxel_size, "the voxel size", "give one nearer to the size of the mesh");
   const Extent extent = extent_of(mesh);
   const double voxels = extent.longest / voxel_size * (1 - kRounding);
   if (depth == 0)
     for (depth = 1; depth < kMaxDepth && voxels > std::ldexp(1.0, depth);) ++depth;
   if (!(voxels <= std::ldexp(1.0, depth)))
     throw Error(ErrorCode::out_of_universe,
-                "the mesh is " + text(extent.longest / voxel_size) + " voxels long but a universe of depth " +
-                    std::to_string(depth) + " has " + std::to_string(std::int64_t{1} << depth),
-                depth < kMaxDepth ? "use larger voxels or a greater depth" : "use larger voxels");
+                "the mesh is " + text(std::fmin(extent.longest / voxel_size, std::numeric_limits<double>::max())) +
+                    " voxels long but a universe of depth " + std::to_string(depth) + " has " +
+                    std::to_string(std::int64_t{1} << depth),
+                "use voxels of side " + detail::rounded_up(std::ldexp(extent.longest, -depth)) + " or more" +
+                    (depth < kMaxDepth ? ", or a greater depth" : ""));
+  require_volume(voxel_size, "the voxel size", "give one nearer to the size of the mesh");
   return centred(mesh, extent, depth, voxel_size);
 }
 

@@ -4,6 +4,7 @@
 
 #include "blackleaf/error.h"
 #include "blackleaf/points.h"
+#include "rounded_up.h"
 
 namespace blackleaf {
 namespace {
@@ -19,6 +20,13 @@ void require_depth(int depth, int lowest) {
   if (depth < lowest || depth > kMaxDepth)
     throw Error(ErrorCode::bad_argument, "depth " + std::to_string(depth) + " is out of range",
                 lowest == 0 ? "use 1 to 20, or 0 for the smallest that holds the points" : "use 1 to 20");
+}
+
+// The size of voxels that hold the points in a universe of this depth wherever the lattice's walls fall.
+std::string larger_voxels(const Eigen::AlignedBox3d& points, int depth) {
+  if (depth < 2) return "use larger voxels";
+  return "use voxels of side " + detail::rounded_up(points.sizes().maxCoeff() / (std::ldexp(1.0, depth) - 2)) +
+         " or more";
 }
 
 MeshPlacement placement(int depth, const Eigen::Vector3d& origin, double voxel_size) {
@@ -50,6 +58,11 @@ MeshPlacement place_points_by_voxel_size(const Eigen::AlignedBox3d& points, doub
                 "use a finite size above 0");
   require_points(points);
   // Voxels by their places in a lattice over all space.
+  if (const double span = points.sizes().maxCoeff() / voxel_size; !(span < 0x1p50))
+    throw Error(ErrorCode::out_of_universe,
+                "the points span 2^50 voxels or more, but a universe of depth " + std::to_string(kMaxDepth) + " has " +
+                    std::to_string(std::int64_t{1} << kMaxDepth),
+                larger_voxels(points, kMaxDepth));
   const Eigen::Vector3d first = (points.min() / voxel_size).array().floor();
   const Eigen::Vector3d last = (points.max() / voxel_size).array().floor();
   if (!(first.cwiseAbs().maxCoeff() < 0x1p50) || !(last.cwiseAbs().maxCoeff() < 0x1p50))
@@ -64,7 +77,7 @@ MeshPlacement place_points_by_voxel_size(const Eigen::AlignedBox3d& points, doub
                 "the points span " + std::to_string(static_cast<std::int64_t>(longest)) +
                     " voxels but a universe of depth " + std::to_string(depth) + " has " +
                     std::to_string(std::int64_t{1} << depth),
-                depth < kMaxDepth ? "use larger voxels or a greater depth" : "use larger voxels");
+                larger_voxels(points, depth) + (depth < kMaxDepth ? " or a greater depth" : ""));
   const Eigen::Vector3d margin = ((std::ldexp(1.0, depth) - voxels.array()) / 2).floor();
   return placement(depth, (first - margin) * voxel_size, voxel_size);
 }

@@ -1,5 +1,6 @@
 #include "surface.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -27,6 +28,23 @@ class Partition {
  private:
   std::vector<std::uint32_t> parent_;
 };
+
+void count_doubles(const std::vector<Triangle>& triangles, std::size_t vertices, MeshReport& report) {
+  std::vector<std::array<std::uint64_t, 3>> corners(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::copy(triangles[i].begin(), triangles[i].end(), corners[i].begin());
+    std::sort(corners[i].begin(), corners[i].end());
+  }
+  const std::vector<std::uint32_t> first = first_equal(corners);
+  std::vector<Triangle> once;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (first[i] == i) once.push_back(triangles[i]);
+  report.doubled_triangles = triangles.size() - once.size();
+  if (report.doubled_triangles == 0) return;
+  std::uint64_t open = 0;
+  for_each_edge(once, vertices, [&](std::uint32_t, std::span<const EdgeUse> uses) { open += uses.size() % 2 != 0; });
+  report.doubled_edges = report.open_edges - std::min(open, report.open_edges);
+}
 
 }  // namespace
 
@@ -76,6 +94,8 @@ MeshReport report_of(const std::vector<Triangle>& triangles, std::size_t vertice
     report.non_manifold_edges += uses.size() > 2;
     report.misoriented_edges += balance != 0;
   });
+  if (report.misoriented_edges > 0 || report.non_manifold_edges > 0)  // open ones are misoriented
+    count_doubles(triangles, vertices, report);
   if (!components) return report;
   Partition parts(vertices);
   for (const Triangle& t : triangles) {

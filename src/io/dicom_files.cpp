@@ -228,14 +228,20 @@ void take_frames(const gdcm::File& file, DicomFile& result) {
   }
 }
 
+bool is_deflated(const gdcm::File& file) {
+  return file.GetHeader().GetDataSetTransferSyntax() == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
+}
+
 DicomFile header_of(const fs::path& path) {
   DicomFile result;
   result.path = path;
-  gdcm::Reader reader;
+  // Up to the values, which are skipped. In deflated files GDCM cannot skip what unpacks to more than the file.
+  gdcm::Reader reader, whole;
   reader.SetFileName(path.c_str());
-  // Up to the values, which are skipped.
-  if (!reader.ReadUpToTag(kPixelData, {kPixelData})) refuse(path, "cannot be read as DICOM", kAgain);
-  const gdcm::File& file = reader.GetFile();
+  whole.SetFileName(path.c_str());
+  const bool skipped = reader.ReadUpToTag(kPixelData, {kPixelData});
+  if (!skipped && (!is_deflated(reader.GetFile()) || !whole.Read())) refuse(path, "cannot be read as DICOM", kAgain);
+  const gdcm::File& file = skipped ? reader.GetFile() : whole.GetFile();
   const DataSet& set = file.GetDataSet();
   result.series = printable(text(set, Tag(0x0020, 0x000e)));
   result.description = printable(text(set, Tag(0x0008, 0x103e)));
@@ -252,9 +258,8 @@ DicomFile header_of(const fs::path& path) {
   const auto values = static_cast<double>(pixels.columns) * static_cast<double>(pixels.rows) *
                       static_cast<double>(pixels.frames) * pixels.samples;
   const gdcm::TransferSyntax& syntax = file.GetHeader().GetDataSetTransferSyntax();
-  const bool deflated = syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
   // deflate packs 1032 bytes into one at the very best, blank JPEG 2000 images more than anything else.
-  const double most = pixels.encapsulated ? 1e5 : deflated ? 1040 : 1;
+  const double most = pixels.encapsulated ? 1e5 : is_deflated(file) ? 1040 : 1;
   if (values * std::max(1, pixels.bits_allocated / 8) > most * static_cast<double>(bytes) ||
       static_cast<std::uint64_t>(pixels.frames) > 1040 * bytes)
     refuse(path,

@@ -100,6 +100,14 @@ class Bytes {
   std::uint64_t lines_ = 0;
 };
 
+/// Throws Error(bad_input) if there are more lines than blanks and comments behind what has been read, which the
+/// message calls `what`.
+inline void require_end(Bytes& bytes, const std::string& name, const char* what) {
+  std::string line;
+  if (bytes.line(line))
+    refuse(name, "has more data behind " + std::string(what) + ": " + shown(line), "mend the numbers in its header");
+}
+
 /// A whole number that fills the word.
 inline std::optional<std::uint64_t> whole_number(std::string_view word) {
   std::uint64_t value = 0;

@@ -34,6 +34,7 @@ bool check_stl(const InputFile& file, const std::string& name) {
   for (std::size_t i = 0; i < 4; ++i)
     triangles |= static_cast<std::uint64_t>(static_cast<unsigned char>(head[80 + i])) << (8 * i);
   const std::uint64_t wanted = kHeader + kTriangle * triangles;
+  if (wanted == file.size() && triangles == 0) refuse(name, "has no triangles", "give a surface, not points or lines");
   if (wanted == file.size()) return false;
   if ((solid && lower(head).find("facet") != std::string::npos) || printable) return true;
   refuse(
@@ -69,6 +70,7 @@ void check_ply_text(const InputFile& file, const std::string& name, const PlyHea
                bytes.left() == 0 ? kCutOff : kDamaged);
     }
   }
+  require_end(bytes, name, "the last element that its header tells of");
 }
 
 void check_ply_binary(const InputFile& file, const std::string& name, const PlyHeader& header) {

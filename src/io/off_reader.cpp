@@ -33,6 +33,8 @@ class Numbers {
     at_ = stop;
     return value;
   }
+  /// What has not been taken.
+  std::string_view rest() const { return {at_, end_}; }
 
  private:
   const char* at_;
@@ -131,6 +133,9 @@ class OffReader {
       corners.clear();
       for (std::uint64_t k = 0; k < *size; ++k) {
         const auto vertex = numbers.next();
+        if (!vertex && numbers.rest().starts_with('-'))
+          refuse(name_, fmt::format("face {} refers to vertex {}, below 0", i, words(numbers.rest()).front()),
+                 kDamaged);
         if (!vertex && line_.size() >= kLongestLine)
           refuse(name_, fmt::format("face {} takes more than 16 MiB", i), "divide it into triangles first");
         if (!vertex)
@@ -145,6 +150,7 @@ class OffReader {
       }
       append_polygon(mesh_.vertices, corners, mesh_.triangles);
     }
+    if (!read_ahead_) require_end(bytes_, name_, "the last face that its header tells of");
   }
 
   Bytes bytes_;

@@ -204,6 +204,11 @@ class PcdReader {
       }
       done += part;
     }
+    // Some bytes of padding do no harm; another point is one that the header has forgotten.
+    if (bytes_.left() >= stride_)
+      refuse(name_,
+             fmt::format("its header tells of {} points but there are {} bytes behind them", points_, bytes_.left()),
+             "mend the numbers in its header");
   }
 
   // Two lengths, then LZF of all first fields, all second fields, ...

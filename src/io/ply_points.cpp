@@ -202,16 +202,14 @@ class BinaryVertices {
   PointSink& sink_;
 };
 
-// The elements up to the vertices; what follows them is of no interest.
+// All elements: what follows the vertices tells whether the header counts them right.
 template <class Vertices>
 void read_with(Vertices vertices, const PlyHeader& header) {
-  for (const PlyElement& element : header.elements) {
-    if (element.name == "vertex") {
+  for (const PlyElement& element : header.elements)
+    if (element.name == "vertex")
       vertices.read(element);
-      return;
-    }
-    vertices.skip(element);
-  }
+    else
+      vertices.skip(element);
 }
 
 }  // namespace
@@ -225,9 +223,12 @@ void read_ply_points(const InputFile& file, const std::string& name, PointSink& 
   if (vertices == header->elements.end() || vertices->count == 0)
     refuse(name, "has no vertices", "give a file with points");
   Bytes bytes(file, header->end);
-  if (header->format == "ascii")
+  if (header->format == "ascii") {
     read_with(TextVertices(bytes, name, sink), *header);
-  else if (header->format == "binary_little_endian" || header->format == "binary_big_endian")
+    const bool lines = std::none_of(header->elements.begin(), header->elements.end(),
+                                    [](const PlyElement& element) { return element.properties.empty(); });
+    if (lines) require_end(bytes, name, "the last element that its header tells of");
+  } else if (header->format == "binary_little_endian" || header->format == "binary_big_endian")
     read_with(BinaryVertices(bytes, header->format == "binary_big_endian", name, sink), *header);
   else
     refuse(name, fmt::format("its format is \"{}\", which is unknown", header->format.substr(0, 40)),

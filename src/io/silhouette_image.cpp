@@ -5,6 +5,7 @@
 #include <cctype>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,26 @@ std::string reason(const char* message) {
   std::string text;
   for (const char* c = message; *c != 0; ++c) text += std::isprint(static_cast<unsigned char>(*c)) ? *c : ' ';
   return text.empty() ? "no reason given" : text;
+}
+
+// The image without what it says of how bright its values are to be shown: libpng would change them by it, and a value
+// above half is object whatever the gamma. Damaged files are left for libpng to complain of.
+std::vector<std::uint8_t> with_plain_values(const std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t kSignature = 8, kAround = 12;  // around a chunk's data: length, type and checksum
+  std::vector<std::uint8_t> result(bytes.begin(), bytes.begin() + kSignature);
+  std::size_t at = kSignature;
+  while (bytes.size() - at >= kAround) {
+    const std::size_t length = std::size_t{bytes[at]} << 24 | std::size_t{bytes[at + 1]} << 16 |
+                               std::size_t{bytes[at + 2]} << 8 | std::size_t{bytes[at + 3]};
+    const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4);
+    if (type == "IDAT" || length > bytes.size() - at - kAround) break;
+    const auto chunk = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+    at += kAround + length;
+    if (type != "gAMA" && type != "sRGB" && type != "iCCP" && type != "cHRM")
+      result.insert(result.end(), chunk, bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  result.insert(result.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end());
+  return result;
 }
 
 struct Freer {
@@ -50,6 +71,7 @@ void read_silhouette_image(const std::filesystem::path& path, Silhouette& silhou
     refuse(fmt::format("cannot be read as PNG: {}", reason(image.message)), "the file is damaged or no PNG image");
   };
   if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0) refuse("is not a PNG image", "convert it to PNG");
+  bytes = with_plain_values(bytes);
   if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) fail();
   const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
   if (pixels >= std::uint64_t{1} << 28)

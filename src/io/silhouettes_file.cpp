@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -79,8 +80,15 @@ Json parse(const std::string& text, const fs::path& path) {
   try {
     // Far deeper than views go, and shallow enough for what works by recursion.
     constexpr int kDeepest = 64;
-    return Json::parse(text, [&](int depth, Json::parse_event_t, const Json&) {
+    std::vector<std::set<std::string>> keys;  // of the objects that are open; the parser would keep the last of a kind
+    return Json::parse(text, [&](int depth, Json::parse_event_t event, const Json& value) {
       if (depth > kDeepest) throw Error(ErrorCode::bad_input, path.string() + ": is nested too deeply", "mend it");
+      if (event == Json::parse_event_t::object_start) keys.emplace_back();
+      if (event == Json::parse_event_t::object_end) keys.pop_back();
+      if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
+        throw Error(ErrorCode::bad_input,
+                    fmt::format("{}: has {} twice in one object", path.string(), one_line(value.dump())),
+                    "keep the one that is meant");
       return true;
     });
   } catch (const Json::parse_error& error) {
@@ -165,7 +173,7 @@ class ViewsReader {
     if (entry.contains("pixel_size")) {
       const Json& size = entry["pixel_size"];
       if (!size.is_number() || !(size.get<double>() >= 0x1p-30) || !(size.get<double>() <= 0x1p30))
-        fail(where + ".pixel_size", "is " + shown(size), "give the side of a pixel in voxels, above 0");
+        fail(where + ".pixel_size", "is " + shown(size), "give the side of a pixel in voxels, from 2^-30 to 2^30");
       s.pixel_size = size.get<double>();
     }
     image(entry["image"].get<std::string>(), where, s);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
+#include "io/length_unit.h"
 #include "io/picture_slices.h"
 
 namespace blackleaf::detail {
@@ -16,19 +17,6 @@ std::optional<double> number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
-}
-
-// Millimetres in a unit of length; none for pixels and whatever else.
-std::optional<double> millimetres(std::string_view unit) {
-  for (const std::string_view micron :
-       {"micron", "microns", "um", "\xc2\xb5m", "\xce\xbcm", "\xb5m", "\\u00B5m", "&#181;m", "&#xB5;m", "&#xb5;m"})
-    if (unit == micron) return 1e-3;
-  if (unit == "nm") return 1e-6;
-  if (unit == "mm") return 1.0;
-  if (unit == "cm") return 10.0;
-  if (unit == "m") return 1000.0;
-  if (unit == "inch" || unit == "in") return 25.4;
-  return std::nullopt;
 }
 
 // The value on ImageJ's line `key=value`, or in the XML attribute key="value".

@@ -214,7 +214,8 @@ ValueLocation nrrd_location(const fs::path& path) {
   const bool listed = !word.empty() && word[0] == "LIST";
   // A blank alone does not make a pattern: it may be part of a name.
   if (listed || (word.size() >= 4 && word[0].find('%') != std::string_view::npos)) {
-    if (location.packing == Packing::text) refuse(path, "its values are text in several files", kOneFile);
+    if (location.packing == Packing::text || location.packing == Packing::hex)
+      refuse(path, "its values are text in several files", kOneFile);
     std::array<std::int64_t, 3> range{};
     for (std::size_t i = 0; i < 3 && !listed; ++i) range[i] = number<int>(word[i + 1]).value_or(0);
     const std::vector<std::string> names =
@@ -328,14 +329,11 @@ ValueLocation nifti_location(const fs::path& path) {
   location.swapped = header.swapped();
   location.stored = header.component();
   if (!bare) {
-    // As ITK has it: what is no number counts as 0, and a slope of 0 as 1.
-    const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
-    constexpr double kNothing = std::numeric_limits<double>::epsilon();
-    location.slope = std::abs(finite(header.slope())) < kNothing ? 1 : header.slope();
-    location.intercept = finite(header.intercept());
-    if (std::abs(location.slope - 1) <= kNothing && std::abs(location.intercept) <= kNothing) {
-      location.slope = 1;
-      location.intercept = 0;
+    // The standard: with a slope of 0 values are not scaled at all, whatever the intercept. The NIfTI library takes
+    // what is no number for 0.
+    if (std::isfinite(header.slope()) && header.slope() != 0) {
+      location.slope = header.slope();
+      if (std::isfinite(header.intercept())) location.intercept = header.intercept();
     }
   }
   return location;

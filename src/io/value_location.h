@@ -23,9 +23,11 @@ struct ValueLocation {
   std::uint64_t before = 0;     // other bytes ahead of the values, once unpacked
   bool at_end = false;          // the values are the last of these bytes, not the first
   bool swapped = false;         // their byte order is not this machine's
-  /// The type in the file, where it is not the one that the library gives; then a value is slope * stored + intercept.
+  /// The type in the file, where the format scales its values; then a value is slope * stored + intercept, a double
+  /// unless that changes nothing.
   std::optional<Component> stored;
   double slope = 1, intercept = 0;
+  bool scaled() const { return slope != 1 || intercept != 0; }
 };
 
 /// Throws Error(bad_input) for a header that makes no sense in this, or that names a data file that cannot be read.

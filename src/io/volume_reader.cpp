@@ -11,6 +11,7 @@
 #include "blackleaf/volume_file.h"
 #include "blackleaf/voxel_stream.h"
 #include "io/image_io.h"
+#include "io/nan_count.h"
 #include "io/slice_stack.h"
 #include "io/value_range.h"
 #include "io/volume_shape.h"
@@ -83,12 +84,12 @@ class VolumeJob {
         return mask;
       });
     } else if constexpr (std::is_floating_point_v<T>) {
-      bool numbers = false;
+      detail::NanCount nan;
       Octree result = stream<T, T>(source, inside, [&](T* values, std::size_t count) {
-        numbers = numbers || !std::all_of(values, values + count, [](T value) { return std::isnan(value); });
+        nan.add(values, count);
         return values;
       });
-      if (!numbers) fail("every value is NaN", "get it again from its source");
+      nan.tell(path_, "taken as outside", options_.warn);
       return result;
     } else {
       return stream<T, T>(source, inside, [](T* values, std::size_t) { return values; });

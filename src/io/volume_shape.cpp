@@ -25,6 +25,9 @@ Frame frame_of(const ImageGeometry& geometry) {
   return frame;
 }
 
+// Files tell where the centre of voxel (0,0,0) is; frames start from a corner.
+const Eigen::Vector3d kToCentre = Eigen::Vector3d::Constant(0.5);
+
 }  // namespace
 
 std::array<std::int64_t, 3> solid_size(const ImageInformation& information) {
@@ -72,11 +75,17 @@ PlacedVolume place_volume(const std::filesystem::path& path, const ImageInformat
   auto& corner = placed.placement.corner;
   for (std::size_t i = 0; i < 3; ++i)
     if (centre) corner[i] = static_cast<std::int32_t>((side - size[i]) / 2);
-  // The file tells where the centre of voxel (0,0,0) is; frames start from the universe's corner.
-  placed.frame = frame_of(information.geometry);
-  placed.frame.origin -=
-      placed.frame.axes * (Eigen::Vector3d(corner[0], corner[1], corner[2]) + Eigen::Vector3d::Constant(0.5));
+  placed.frame = frame_of(information.geometry).shifted(-Eigen::Vector3d(corner[0], corner[1], corner[2]) - kToCentre);
   return placed;
+}
+
+std::array<std::int64_t, 3> corner_in(const std::filesystem::path& path, const ImageInformation& information,
+                                      const Frame& frame) {
+  const auto corner = whole_shift(frame_of(information.geometry).shifted(-kToCentre), frame);
+  if (!corner)
+    refuse(path, "its voxels are not those of the universe that it is to lie in, shifted by whole voxels",
+           "resample it, or let it have a universe of its own");
+  return *corner;
 }
 
 }  // namespace blackleaf::detail

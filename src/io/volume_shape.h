@@ -28,4 +28,9 @@ struct PlacedVolume {
 PlacedVolume place_volume(const std::filesystem::path& path, const ImageInformation& information, int depth,
                           bool centre);
 
+/// The first voxel of the volume in a universe of this frame, shifted by whole voxels; it may lie outside. Throws
+/// Error(bad_input) that begins with the file's name when the volume's voxels are not those of the frame.
+std::array<std::int64_t, 3> corner_in(const std::filesystem::path& path, const ImageInformation& information,
+                                      const Frame& frame);
+
 }  // namespace blackleaf::detail

@@ -14,6 +14,7 @@
 #include "file/input_file.h"
 #include "io/header_text.h"
 #include "io/inflating_file.h"
+#include "io/length_unit.h"
 #include "io/slice_stack.h"
 #include "io/text_values.h"
 #include "io/volume_header.h"
@@ -91,19 +92,11 @@ void swap_bytes(void* values, std::size_t count, std::size_t size) {
   }
 }
 
-// NIfTI's values: a float for every type but double, the sum and the product those of doubles (as ITK has it).
-template <class Stored, class Value>
-void rescale(const void* stored, void* values, std::size_t count, double slope, double intercept) {
-  const auto* const from = static_cast<const Stored*>(stored);
-  auto* const to = static_cast<Value*>(values);
-  for (std::size_t i = 0; i < count; ++i)
-    to[i] = static_cast<Value>(static_cast<double>(static_cast<Value>(from[i])) * slope + intercept);
-}
-
-void rescale(Component type, const void* stored, void* values, std::size_t count, double slope, double intercept) {
+// NIfTI's values, in doubles: floats would lose the last bits of 32-bit whole numbers.
+void rescale(Component type, const void* stored, double* values, std::size_t count, double slope, double intercept) {
   with_type_of(type, [&]<class Stored>(Stored) {
-    using Value = std::conditional_t<std::is_same_v<Stored, double>, double, float>;
-    rescale<Stored, Value>(stored, values, count, slope, intercept);
+    const auto* const from = static_cast<const Stored*>(stored);
+    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(from[i]) * slope + intercept;
   });
 }
 
@@ -124,7 +117,7 @@ class DirectSource : public VolumeSource {
         stored_(location.stored.value_or(*information_.component)),
         slope_(location.slope),
         intercept_(location.intercept),
-        scaled_(slope_ != 1 || intercept_ != 0 || stored_ != *information_.component) {
+        scaled_(location.scaled()) {
     if (location.packing == Packing::compressed)
       bytes_ = std::make_unique<PackedBytes>(path_, location);
     else
@@ -136,7 +129,7 @@ class DirectSource : public VolumeSource {
   void read(std::int64_t slices, void* values) override {
     const std::uint64_t count = slice_ * static_cast<std::uint64_t>(slices);
     if (scaled_)
-      read_scaled(count, static_cast<std::uint8_t*>(values));
+      read_scaled(count, static_cast<double*>(values));
     else
       read_stored(count, static_cast<std::uint8_t*>(values));
     left_ -= slices;
@@ -151,14 +144,13 @@ class DirectSource : public VolumeSource {
     if (swapped_) swap_bytes(values, count, bytes_of(stored_));
   }
 
-  void read_scaled(std::uint64_t count, std::uint8_t* values) {
+  void read_scaled(std::uint64_t count, double* values) {
     constexpr std::uint64_t kAtOnce = 1 << 14;
     scratch_.resize(kAtOnce * bytes_of(stored_));
-    const std::size_t size = bytes_of(*information_.component);
     for (std::uint64_t done = 0; done < count; done += kAtOnce) {
       const std::uint64_t part = std::min(kAtOnce, count - done);
       read_stored(part, scratch_.data());
-      rescale(stored_, scratch_.data(), values + done * size, part, slope_, intercept_);
+      rescale(stored_, scratch_.data(), values + done, part, slope_, intercept_);
     }
   }
 
@@ -185,8 +177,8 @@ class DirectSource : public VolumeSource {
 // Values that only the format's library finds: all of them are read at once.
 class WholeSource : public VolumeSource {
  public:
-  WholeSource(fs::path path, std::unique_ptr<ImageReader> reader)
-      : path_(std::move(path)), reader_(std::move(reader)), information_(reader_->information()) {}
+  WholeSource(fs::path path, std::unique_ptr<ImageReader> reader, ImageInformation information)
+      : path_(std::move(path)), reader_(std::move(reader)), information_(std::move(information)) {}
 
   const ImageInformation& information() const override { return information_; }
 
@@ -237,18 +229,18 @@ std::unique_ptr<VolumeSource> open_volume(const fs::path& path, const SourceOpti
            "use .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .hdr or .img, a DICOM, TIFF or PNG file, or a folder of them");
   ValueLocation location = check_header(path, *format);
   auto reader = std::make_unique<ImageReader>(path, *format);
-  const ImageInformation& information = reader->information();
+  ImageInformation information = reader->information();
   check_shape(path, information);
   const Component stored = location.stored.value_or(*information.component);
+  apply_units(path, *format, information.geometry, options.warn);
+  if (location.stored) information.component = location.scaled() ? Component::f64 : stored;
   const auto size = solid_size(information);
   const auto voxels = static_cast<std::uint64_t>(size[0] * size[1] * size[2]);  // at most 2^60
   check_believable(path, location, voxels, voxels * bytes_of(stored));
   if (location.packing == Packing::text && location.known) check_text_values(path, location, stored, voxels);
-  // What is scaled becomes a float, or stays a double.
-  const Component scaled = stored == Component::f64 ? Component::f64 : Component::f32;
-  if (*information.component != stored && *information.component != scaled) location.direct = false;
-  if (location.direct) return std::make_unique<DirectSource>(path, location, information);
-  return std::make_unique<WholeSource>(path, std::move(reader));
+  if (location.packing == Packing::hex) check_hex_values(path, location, 2 * voxels * bytes_of(stored));
+  if (location.direct) return std::make_unique<DirectSource>(path, location, std::move(information));
+  return std::make_unique<WholeSource>(path, std::move(reader), std::move(information));
 }
 
 }  // namespace blackleaf::detail

@@ -49,6 +49,23 @@ TEST(MeshCheck, NonManifoldEdgesAndComponents) {
   EXPECT_EQ(report.components, 2u);
 }
 
+TEST(MeshCheck, DoubledTriangles) {
+  const TriangleMesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(check(box).doubled_triangles, 0u);
+  TriangleMesh mesh = box;
+  mesh.triangles.push_back({box.triangles[4][1], box.triangles[4][2], box.triangles[4][0]});
+  EXPECT_EQ(check(mesh).doubled_triangles, 1u);
+  EXPECT_EQ(check(mesh).open_edges, 3u);
+  EXPECT_EQ(check(mesh).doubled_edges, 3u);
+  mesh.triangles.push_back({box.triangles[4][1], box.triangles[4][0], box.triangles[4][2]});  // turned over
+  EXPECT_EQ(check(mesh).doubled_triangles, 2u);
+  EXPECT_TRUE(check(mesh).closed());
+  EXPECT_EQ(check(mesh).doubled_edges, 0u);
+  mesh.triangles.erase(mesh.triangles.begin());  // a hole besides
+  EXPECT_EQ(check(mesh).open_edges, 3u);
+  EXPECT_EQ(check(mesh).doubled_edges, 0u);
+}
+
 TEST(MeshCheck, ZerosOfBothSignsAreOnePosition) {
   TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   TriangleMesh split;

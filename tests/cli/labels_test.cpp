@@ -1,4 +1,6 @@
 // Files of many labels: build --labels and --bands, info, --label of every command that takes a solid.
+#include <fmt/format.h>
+
 #include "blackleaf/label_map.h"
 #include "blackleaf/octree_file.h"
 #include "blackleaf/runs_file.h"
@@ -129,11 +131,55 @@ TEST_F(LabelsCommand, Like) {
   done({"build", "a.nrrd", "-o", "b.octree", "--labels", "--like", "a.octree"});
   EXPECT_TRUE(*load(folder() / "b.octree").labels == *load(folder() / "a.octree").labels);
   make_box("far.octree", 2, {0, 0, 0}, {1, 1, 1});
-  refused({"build", "a.nrrd", "-o", "c.octree", "--labels", "--like", "far.octree"}, "from the universe's corner on");
+  refused({"build", "a.nrrd", "-o", "c.octree", "--labels", "--like", "far.octree"},
+          "its voxels are not those of the universe");
   make_box("big.octree", 3, {0, 0, 0}, {1, 1, 1});
   done({"export", "a.octree", "-o", "a.runs"});
   refused({"build", "a.runs", "-o", "c.octree", "--labels", "--like", "big.octree"},
           "fits only universes of its own depth");
+}
+
+// Labels in another universe: shifted by whole voxels, and what reaches beyond it is background.
+TEST_F(LabelsCommand, LikeShiftsByWholeVoxels) {
+  const auto geometry = [](const std::string& origin) {
+    return "space: left-posterior-superior\nspace directions: (2,0,0) (0,2,0) (0,0,2)\nspace origin: " + origin + "\n";
+  };
+  make_nrrd("u.nrrd", {4, 4, 4}, std::vector<int>(64, 1), geometry("(100,0,0)"));
+  done({"build", "u.nrrd", "-o", "u.octree"});
+  const auto labels = [&](const std::string& name) { return done({"info", name, "--json"}).json()["labels"]; };
+  make_nrrd("in.nrrd", {2, 2, 2}, {5, 5, 5, 5, 5, 5, 5, 9}, geometry("(104,2,0)"));
+  done({"build", "in.nrrd", "-o", "in.octree", "--labels", "--like", "u.octree"});
+  EXPECT_EQ(labels("in.octree"), json::parse(R"([{"label":5,"volume":7,"bounding_box":[[2,1,0],[4,3,2]]},
+                                                 {"label":9,"volume":1,"bounding_box":[[3,2,1],[4,3,2]]}])"));
+  EXPECT_EQ(done({"info", "in.octree", "--json"}).json()["frame"],
+            done({"info", "u.octree", "--json"}).json()["frame"]);
+  make_nrrd("half.nrrd", {2, 2, 2}, {5, 5, 5, 5, 5, 5, 5, 9}, geometry("(105,2,0)"));
+  refused({"build", "half.nrrd", "-o", "o.octree", "--labels", "--like", "u.octree"},
+          "half.nrrd: its voxels are not those of the universe that it is to lie in, shifted by whole voxels");
+  // 8 x 8 x 8 around the universe, which begins at (3,2,1) of it.
+  std::vector<int> values(512, 0);
+  const auto at = [&](int x, int y, int z) -> int& { return values[static_cast<std::size_t>(x + 8 * (y + 8 * z))]; };
+  at(3, 2, 1) = 7;
+  at(6, 5, 4) = 8;
+  make_nrrd("around.nrrd", {8, 8, 8}, values, geometry("(94,-4,-2)"));
+  done({"build", "around.nrrd", "-o", "around.octree", "--labels", "--like", "u.octree"});
+  EXPECT_EQ(labels("around.octree"), json::parse(R"([{"label":7,"volume":1,"bounding_box":[[0,0,0],[1,1,1]]},
+                                                     {"label":8,"volume":1,"bounding_box":[[3,3,3],[4,4,4]]}])"));
+  done({"build", "around.nrrd", "-o", "bands.octree", "--bands", "1,8", "--like", "u.octree"});
+  EXPECT_EQ(labels("bands.octree").size(), 2u);
+  for (const std::array<int, 3> outside : {std::array{2, 2, 1}, std::array{3, 1, 1}, std::array{3, 2, 0},
+                                           std::array{7, 2, 1}, std::array{6, 6, 4}, std::array{0, 0, 7}}) {
+    std::vector<int> more = values;
+    more[static_cast<std::size_t>(outside[0] + 8 * (outside[1] + 8 * outside[2]))] = 3;
+    make_nrrd("more.nrrd", {8, 8, 8}, more, geometry("(94,-4,-2)"));
+    const std::string voxel = fmt::format("more.nrrd: voxel ({},{},{}) has value 3 and lies outside the universe",
+                                          outside[0], outside[1], outside[2]);
+    refused({"build", "more.nrrd", "-o", "o.octree", "--labels", "--like", "u.octree"}, voxel);
+    refused({"build", "more.nrrd", "-o", "o.octree", "--bands", "3", "--like", "u.octree"}, voxel);
+    done({"build", "more.nrrd", "-o", "o.octree", "--bands", "4", "--like", "u.octree"});
+  }
+  make_nrrd("far.nrrd", {2, 2, 2}, std::vector<int>(8, 0), geometry("(300,0,0)"));
+  refused({"build", "far.nrrd", "-o", "o.octree", "--labels", "--like", "u.octree"}, "far.nrrd: lies outside");
 }
 
 TEST_F(LabelsCommand, Refusals) {

@@ -151,6 +151,26 @@ TEST(DicomStack, RescaledValues) {
   scan.expect_same(folder / "pet", meant, "double", {.low = 100.0});
 }
 
+// Deflated files, also such as unpack to much more than they are.
+TEST(DicomStack, Deflated) {
+  const test::TemporaryFolder folder;
+  std::mt19937 random(34);
+  for (const std::array<int, 3> size : {std::array{5, 4, 6}, std::array{5, 4, 1}, std::array{300, 200, 1}}) {
+    SCOPED_TRACE(size[0]);
+    for (const bool blank : {false, true}) {
+      Scan scan(random, size);
+      if (blank) std::fill(scan.stored.begin() + 1, scan.stored.end(), std::int16_t{0});
+      scan.stored[0] = 7;
+      scan.model.syntax = "1.2.840.10008.1.2.1.99";
+      scan.model.deflated = true;
+      const auto where = folder / fmt::format("{} {} {}", size[0], size[2], blank);
+      scan.step = {0, 0, size[2] == 1 ? 1.0 : 2.5};
+      scan.write(where, random);
+      scan.expect_same<std::int16_t>(where, "int16", [](std::int16_t v) { return v; }, {});
+    }
+  }
+}
+
 // What is above the stored bits is no part of the values.
 TEST(DicomStack, TypesAndBitsOfValues) {
   const test::TemporaryFolder folder;

@@ -1,6 +1,7 @@
 #include "blackleaf/silhouettes_file.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <array>
 
@@ -55,6 +56,28 @@ TEST_F(SilhouettesFile, BrighterThanHalfIsObject) {
   EXPECT_EQ(pixels("rgb.png"), (Bytes{1, 1, 0, 0}));
   write_png("map.png", 4, 1, PNG_FORMAT_RGB_COLORMAP, {0, 1, 2, 1}, {9, 9, 9, 250, 250, 250, 40, 40, 40});
   EXPECT_EQ(pixels("map.png"), (Bytes{0, 1, 0, 1}));
+}
+
+// Whatever a file says of how bright its values are to be shown, it is the values that count.
+TEST_F(SilhouettesFile, GammaIsNotApplied) {
+  const auto chunk = [](const std::string& name, const std::string& content) {
+    const std::string both = name + content;
+    const auto crc = crc32(0, reinterpret_cast<const Bytef*>(both.data()), static_cast<uInt>(both.size()));
+    const auto big = [](std::uint32_t value) {
+      return std::string{static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8),
+                         static_cast<char>(value)};
+    };
+    return big(static_cast<std::uint32_t>(content.size())) + both + big(static_cast<std::uint32_t>(crc));
+  };
+  const std::string linear("\0\1\x86\xa0", 4), steep("\0\0\x27\x10", 4), srgb("\0", 1);
+  write_png("plain.png", 4, 1, PNG_FORMAT_GRAY, {60, 127, 128, 190});
+  const std::string plain = read_text(folder_ / "plain.png");
+  const std::size_t behind_header = 8 + 25;
+  for (const std::string& more : {chunk("gAMA", linear), chunk("gAMA", steep), chunk("sRGB", srgb),
+                                  chunk("gAMA", steep) + chunk("tEXt", std::string("Title\0x", 7))}) {
+    write_file(folder_ / "g.png", plain.substr(0, behind_header) + more + plain.substr(behind_header));
+    EXPECT_EQ(pixels("g.png"), (Bytes{0, 0, 1, 1}));
+  }
 }
 
 TEST_F(SilhouettesFile, WhereThereIsAnAlphaChannelOpaqueIsObject) {

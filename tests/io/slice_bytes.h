@@ -60,6 +60,7 @@ struct DicomBytes {
   std::string doses;   // elements of group 3004
   std::string pixels;
   bool encapsulated = false;  // pixels are a sequence of fragments
+  bool deflated = false;      // all but the meta information
 
   std::string bytes() const {
     const std::string meta = element(2, 0x01, "OB", std::string("\0\1", 2)) + element(2, 0x02, "UI", sop_class) +
@@ -89,6 +90,19 @@ struct DicomBytes {
              little(std::uint32_t{0});
     else
       set += element(0x7fe0, 0x10, allocated == 8 ? "OB" : "OW", pixels);
+    if (deflated) {
+      z_stream stream{};
+      deflateInit2(&stream, 9, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY);
+      std::string packed(deflateBound(&stream, set.size()), '\0');
+      stream.next_in = reinterpret_cast<Bytef*>(set.data());
+      stream.avail_in = static_cast<uInt>(set.size());
+      stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+      stream.avail_out = static_cast<uInt>(packed.size());
+      deflate(&stream, Z_FINISH);
+      packed.resize(stream.total_out);
+      deflateEnd(&stream);
+      set = packed;
+    }
     return std::string(128, '\0') + "DICM" + element(2, 0x00, "UL", little(static_cast<std::uint32_t>(meta.size()))) +
            meta + set;
   }
