@@ -46,7 +46,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 // Whether the number that a text writes is the double that was made of it. Only whole numbers beyond 2^53 are looked
 // at: below, a double is as near as anybody can ask for; beyond, it may be another whole number.
 bool is_itself(std::string_view text, double value) {
-  if (std::abs(value) < 0x1p53) return true;
+  if (std::abs(value) < 0x1p53 || std::abs(value) > 0x1p64) return true;  // no value lies beyond the latter
   if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());
   const std::string_view mantissa = text.substr(0, e);

@@ -21,9 +21,8 @@ Octree with_surface(const Octree& inside, const detail::GridMesh& grid, MeshRule
   return detail::with_touched(inside, grid, detail::part_of(work, 0.5, 1));
 }
 
-// How many of the triangles have no area on the grid. A mesh of these alone bounds nothing, which is an error, unless its
-// surface is asked for and it has any.
-std::uint64_t without_area(const TriangleMesh& mesh, const detail::GridMesh& grid, MeshRule rule) {
+// How many of the triangles have no area on the grid. A mesh of these alone is an error.
+std::uint64_t without_area(const TriangleMesh& mesh, const detail::GridMesh& grid) {
   std::uint64_t count = mesh.triangles.size() - grid.triangles.size();
   for (const detail::Triangle& t : grid.triangles) {
     bool flat = true;
@@ -31,7 +30,7 @@ std::uint64_t without_area(const TriangleMesh& mesh, const detail::GridMesh& gri
       flat = flat && detail::normal(grid.vertices[t[0]], grid.vertices[t[1]], grid.vertices[t[2]], i) == 0;
     count += flat;
   }
-  if (count == mesh.triangles.size() && (rule == MeshRule::centre || grid.triangles.empty()))
+  if (count == mesh.triangles.size())
     throw Error(
         ErrorCode::bad_input,
         count == 1 ? "its one triangle has no area" : "none of its " + std::to_string(count) + " triangles has an area",
@@ -43,7 +42,7 @@ std::uint64_t without_area(const TriangleMesh& mesh, const detail::GridMesh& gri
 
 Octree octree_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placement, MeshRule rule, const Work& work) {
   const detail::GridMesh grid = detail::grid_mesh(mesh, placement);
-  without_area(mesh, grid, rule);
+  without_area(mesh, grid);
   detail::require_closed(grid.report(false), true);
   const Work part = inside_part(work, rule);
   const detail::Slabs slabs = detail::slabs_of(grid, {}, detail::part_of(part, 0, 0.6));
@@ -59,7 +58,7 @@ MeshSolid solid_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placeme
   MeshSolid solid;
   solid.found = grid.report(true);
   solid.found.triangles = mesh.triangles.size();
-  solid.found.degenerate_triangles = without_area(mesh, grid, options.rule);
+  solid.found.degenerate_triangles = without_area(mesh, grid);
   const Work part = inside_part(work, options.rule);
   const bool parity = options.inside == Inside::parity;
   if (parity) detail::require_closed(solid.found, false);

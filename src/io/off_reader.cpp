@@ -50,6 +50,7 @@ class OffReader {
     read_vertices();
     read_faces();
     if (mesh_.triangles.empty()) refuse(name_, "has no triangles", "give a surface, not points or lines");
+    require_end(bytes_, name_, "the last face that its header tells of");
     return std::move(mesh_);
   }
 
@@ -150,7 +151,6 @@ class OffReader {
       }
       append_polygon(mesh_.vertices, corners, mesh_.triangles);
     }
-    if (!read_ahead_) require_end(bytes_, name_, "the last face that its header tells of");
   }
 
   Bytes bytes_;

@@ -160,10 +160,12 @@ TEST(MeshPlacement, Errors) {
             "voxel size -1 is out of range; use a finite size above 0");
   EXPECT_EQ(argument([&] { place_by_voxel_size(mesh, 1, 21); }),
             "depth 21 is out of range; use 1 to 20, or 0 for the smallest that holds the mesh");
-  EXPECT_EQ(error_of(ErrorCode::out_of_universe, [&] { place_by_voxel_size(mesh, 0.25, 3); }),
-            "the mesh is 16 voxels long but a universe of depth 3 has 8; use larger voxels or a greater depth");
-  EXPECT_EQ(error_of(ErrorCode::out_of_universe, [&] { place_by_voxel_size(mesh, 1e-9); }),
-            "the mesh is 4e+09 voxels long but a universe of depth 20 has 1048576; use larger voxels");
+  EXPECT_EQ(
+      error_of(ErrorCode::out_of_universe, [&] { place_by_voxel_size(mesh, 0.25, 3); }),
+      "the mesh is 16 voxels long but a universe of depth 3 has 8; use voxels of side 0.5 or more, or a greater depth");
+  EXPECT_EQ(
+      error_of(ErrorCode::out_of_universe, [&] { place_by_voxel_size(mesh, 1e-9); }),
+      "the mesh is 4e+09 voxels long but a universe of depth 20 has 1048576; use voxels of side 3.815e-06 or more");
   TriangleMesh point = mesh;
   for (auto& v : point.vertices) v = {1, 2, 3};
   EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { place_by_fraction(point, 8, 0.5); }),

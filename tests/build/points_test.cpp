@@ -213,8 +213,14 @@ TEST(PointPlacement, WhatIsWrongIsTold) {
   EXPECT_NE(input([] { place_points_by_fraction(box_of({{1, 1, 1}}), 3, 0.5); }).find("one place"), std::string::npos);
   EXPECT_EQ(place_points_by_voxel_size(box_of({{1, 1, 1}}), 2).depth, 1);  // one place is enough here
   EXPECT_NE(input([] {
-              place_points_by_voxel_size(box_of({{0, 0, 0}, {1e30, 1, 1}}), 1);
-            }).find("2^50"),
+              place_points_by_voxel_size(box_of({{1e30, 0, 0}, {1e30, 1, 1}}), 1);
+            }).find("2^50 voxels or more from the origin"),
+            std::string::npos);
+  EXPECT_NE(error_of(ErrorCode::out_of_universe,
+                     [] {
+                       place_points_by_voxel_size(box_of({{0, 0, 0}, {1e30, 1, 1}}), 1);
+                     })
+                .find("span 2^50 voxels or more"),
             std::string::npos);
   EXPECT_NE(input([] {
               place_points_by_fraction(box_of({{-1e308, 0, 0}, {1e308, 1, 1}}), 3, 0.5);

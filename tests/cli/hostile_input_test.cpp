@@ -251,7 +251,7 @@ TEST_F(HostileMeshes, EmptyOctreesOfSolids) {
 TEST_F(HostileMeshes, NothingButTrianglesWithoutArea) {
   write("m.off", off("0 0 0\n1 1 1\n2 2 2\n", {"0 1 2", "2 1 0"}));
   refused_build("m.off", "m.off: none of its 2 triangles has an area");
-  done({"build", "m.off", "-o", "o.octree", "--rule", "touched", "--depth", "4"});
+  refused_build("m.off", "m.off: none of its 2 triangles has an area", {"--rule", "touched"});
   write("m.off", off("0 0 0\n1 1 1\n2 2 2\n", {"0 1 1"}));
   refused_build("m.off", "m.off: its one triangle has no area");
   refused_build("m.off", "m.off: its one triangle has no area", {"--rule", "touched"});

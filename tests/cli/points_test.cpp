@@ -97,7 +97,7 @@ TEST_F(PointsCommand, BadInputIsRefused) {
   make_stl("box.stl", {0, 0, 0}, {1, 2, 3});
   refused({"build", "bad.xyz", "-o", "x.octree"}, "bad.xyz: line 2");
   refused({"build", "one.xyz", "-o", "x.octree"}, "one.xyz: all points lie at one place; give the voxels' size");
-  refused({"build", "far.xyz", "-o", "x.octree", "--voxel-size", "1"}, "far.xyz: the points lie 2^50 voxels");
+  refused({"build", "far.xyz", "-o", "x.octree", "--voxel-size", "1"}, "far.xyz: the points span 2^50 voxels or more");
   refused({"build", "p.xyz", "-o", "x.octree", "--voxel-size", "1e-7"}, "p.xyz: the points span");
   refused({"build", "p.xyz", "-o", "x.octree", "--min-points", "0"}, "--min-points");
   refused({"build", "p.xyz", "-o", "x.octree", "--rule", "touched"}, "--rule does not apply to 'p.xyz'");

@@ -122,7 +122,7 @@ TEST_F(OffFile, Refused) {
   refuse(replaced(kTetrahedron, "4 4 6", "0 0 0"), {"has no triangles"});
   refuse(replaced(kTetrahedron, "3 1 2 3", "3 1 2 77"), {"face 3 refers to vertex 77", "the last is 3"});
   refuse(replaced(kTetrahedron, "3 1 2 3", "3 1 2 99999999999999999999999"), {"face 3 refers to vertex"});
-  refuse(replaced(kTetrahedron, "3 1 2 3", "3 1 2 -1"), {"face 3 tells of 3 vertices but names 2"});
+  refuse(replaced(kTetrahedron, "3 1 2 3", "3 1 2 -1"), {"face 3 refers to vertex -1, below 0"});
   refuse(replaced(kTetrahedron, "3 1 2 3", "9999999999 1 2 3"), {"face 3 tells of 9999999999 vertices but names 3"});
   refuse(replaced(kTetrahedron, "3 1 2 3", "three"), {"face 3 does not begin with"});
   refuse(replaced(kTetrahedron, "1 0 0", "nan 0 0"), {"vertex 1 is not finite"});
