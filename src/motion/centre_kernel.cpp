@@ -47,7 +47,23 @@ constexpr auto kBitOf = [] {
   return tables;
 }();
 
-const std::uint8_t* bytes_of(const Block* block) { return reinterpret_cast<const std::uint8_t*>(block->data()); }
+using Blocks = std::array<Block, Neighbourhood::kCells>;
+
+Block bricks_of(const Neighbourhood& source, std::size_t cell) {
+  Block block;
+  const std::uint64_t* gray = source.words(cell);
+  for (std::size_t octant = 0; octant < 8; ++octant)
+    block[octant] =
+        (source.gray(cell) >> octant & 1) != 0 ? *gray++ : -std::uint64_t{source.black(cell) >> octant & 1u};
+  return block;
+}
+
+std::size_t cell_at(const BrickLookUp& brick, std::size_t octant) {
+  return brick.cell + (octant & 1 ? brick.next[0] : 0u) + (octant & 2 ? brick.next[1] : 0u) +
+         (octant & 4 ? brick.next[2] : 0u);
+}
+
+const std::uint8_t* bytes_of(const Block& block) { return reinterpret_cast<const std::uint8_t*>(block.data()); }
 
 }  // namespace
 }  // namespace blackleaf::detail
@@ -58,7 +74,18 @@ namespace blackleaf::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void look_up_lanes(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
+void look_up_lanes(const CentreSteps& steps, const Neighbourhood& source, std::span<BrickLookUp> bricks) {
+  Blocks blocks;
+  source.for_each_row([&](std::size_t y, std::size_t z) HWY_ATTR {
+    for (std::size_t cell = 3 * y + 9 * z, end = cell + 3; cell < end; ++cell) {
+#if HWY_TARGET <= HWY_AVX3
+      const __m512i gray = _mm512_maskz_expandloadu_epi64(source.gray(cell), source.words(cell));
+      _mm512_storeu_si512(blocks[cell].data(), _mm512_mask_mov_epi64(gray, source.black(cell), _mm512_set1_epi64(-1)));
+#else
+      blocks[cell] = bricks_of(source, cell);
+#endif
+    }
+  });
   const hn::CappedTag<std::uint8_t, 64> d;
   const hn::Repartition<std::uint16_t, decltype(d)> d16;
   const std::size_t lanes = hn::Lanes(d);
@@ -70,7 +97,8 @@ void look_up_lanes(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
   for (BrickLookUp& brick : bricks) {
     auto* around = reinterpret_cast<std::uint8_t*>(brick.around.data());
     for (std::size_t i = 0; i < 64; i += lanes) {
-      const auto cell = [&](std::size_t octant) HWY_ATTR { return hn::LoadU(d, bytes_of(brick.cells[octant]) + i); };
+      const auto cell = [&](std::size_t octant)
+                            HWY_ATTR { return hn::LoadU(d, bytes_of(blocks[cell_at(brick, octant)]) + i); };
       const auto from = [&](std::size_t axis) HWY_ATTR { return hn::LoadU(d, &kFromPair[axis][brick.pair[axis]][i]); };
       const auto x = from(0), y = from(1), z = from(2);
       const auto lower =
@@ -125,14 +153,18 @@ HWY_EXPORT(look_up_lanes);
 
 bool scalar_wanted = false;
 
-void look_up_scalar(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
+void look_up_scalar(const CentreSteps& steps, const Neighbourhood& source, std::span<BrickLookUp> bricks) {
+  Blocks blocks;
+  source.for_each_row([&](std::size_t y, std::size_t z) {
+    for (std::size_t x = 0; x < 3; ++x) blocks[x + 3 * y + 9 * z] = bricks_of(source, x + 3 * y + 9 * z);
+  });
   for (BrickLookUp& brick : bricks) {
     auto* around = reinterpret_cast<std::uint8_t*>(brick.around.data());
     for (std::size_t byte = 0; byte < 64; ++byte) {
       std::size_t octant = 0;
       for (std::size_t axis = 0; axis < 3; ++axis)
         octant |= std::size_t{kFromPair[axis][brick.pair[axis]][byte] == 0} << axis;
-      around[byte] = bytes_of(brick.cells[octant])[byte];
+      around[byte] = bytes_of(blocks[cell_at(brick, octant)])[byte];
     }
     brick.bits = brick.unclear = 0;
     for (std::size_t i = 0; i < 64; ++i) {
@@ -150,9 +182,9 @@ void look_up_scalar(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
 
 }  // namespace
 
-void look_up(const CentreSteps& steps, std::span<BrickLookUp> bricks) {
-  if (scalar_wanted) return look_up_scalar(steps, bricks);
-  HWY_DYNAMIC_DISPATCH(look_up_lanes)(steps, bricks);
+void look_up(const CentreSteps& steps, const Neighbourhood& source, std::span<BrickLookUp> bricks) {
+  if (scalar_wanted) return look_up_scalar(steps, source, bricks);
+  HWY_DYNAMIC_DISPATCH(look_up_lanes)(steps, source, bricks);
 }
 
 std::vector<std::string> centre_kernels() {

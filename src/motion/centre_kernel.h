@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "neighbourhood.h"
+
 namespace blackleaf::detail {
 
 inline constexpr int kCentreBits = 13;  // of fraction
@@ -33,16 +35,17 @@ using Block = std::array<std::uint64_t, 8>;
 /// What is asked about a brick, and the answer.
 struct BrickLookUp {
   /// The first centre, one unit added.
-  std::array<std::uint16_t, 3> first{};
+  std::array<std::uint16_t, 3> first;
   /// The first pair of voxels of the box on every axis, 0..3 within its cell.
-  std::array<std::uint8_t, 3> pair{};
-  /// The cells from the one in which the box begins: octant order; the same again on an axis on which it ends there.
-  std::array<const Block*, 8> cells{};
+  std::array<std::uint8_t, 3> pair;
+  /// The cell in which the box begins; how much farther the one is in which it ends, on every axis.
+  std::uint8_t cell;
+  std::array<std::uint8_t, 3> next;
 
   /// The voxels of the box; those at (x, y, z) modulo 8.
-  Block around{};
-  std::uint64_t bits = 0;     // of the target brick; unspecified where unclear
-  std::uint64_t unclear = 0;  // centres
+  Block around;
+  std::uint64_t bits;     // of the target brick; unspecified where unclear
+  std::uint64_t unclear;  // centres
 
   /// The colour of a source voxel. Requires: it is in the box.
   bool black(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -52,8 +55,8 @@ struct BrickLookUp {
   }
 };
 
-/// Answers them.
-void look_up(const CentreSteps& steps, std::span<BrickLookUp> bricks);
+/// Answers them. Requires: a source of level 3 that holds the boxes.
+void look_up(const CentreSteps& steps, const Neighbourhood& source, std::span<BrickLookUp> bricks);
 
 /// The kernels that this machine can run, best first; the last is "scalar".
 std::vector<std::string> centre_kernels();

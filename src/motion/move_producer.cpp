@@ -8,13 +8,6 @@ constexpr int kCut = kBits - kCentreBits;
 
 std::uint16_t cut(std::int64_t coordinate) { return static_cast<std::uint16_t>(coordinate >> kCut); }
 
-constexpr Block kWhiteBlock{};
-constexpr Block kBlackBlock = [] {
-  Block block{};
-  block.fill(~std::uint64_t{0});
-  return block;
-}();
-
 }  // namespace
 
 MoveProducer::MoveProducer(const FixedMotion& motion, const Octree& source, int depth)
@@ -39,32 +32,40 @@ MoveProducer::MoveProducer(const FixedMotion& motion, const Octree& source, int 
   }
 }
 
-MoveProducer::Task MoveProducer::at(const Cube& cube) const {
+MoveProducer::Task MoveProducer::root() const {
+  Task task;
+  enter(task, {0, 0, 0, depth_ < 3 ? 3 : depth_});
+  return task;
+}
+
+MoveProducer::Task MoveProducer::child(const Task& task, const Cube& cube, int) const {
+  Task below;
+  if (task.above_source) {
+    enter(below, cube);
+  } else {
+    const MovedBack::Box box = back_.box(cube);
+    const CellRange cells = box.cells(cube.level);
+    below.colour = task.source.colour(cells);
+    if (below.colour == Colour::gray) {
+      below.source.narrow(source_, task.source, cells);
+      below.colour = below.source.colour(box.cells(cube.level - 1));
+    }
+  }
+  return below;
+}
+
+void MoveProducer::enter(Task& task, const Cube& cube) const {
   const MovedBack::Box box = back_.box(cube);
   const CellRange cells = box.cells(cube.level);
-  Task task;
   task.above_source = cube.level > source_.level();
   if (task.above_source) {
     task.colour = Colour::gray;  // at this level the whole source is in cell (0,0,0)
     for (std::size_t i = 0; i < 3; ++i)
       if (cells.low[i] > 0 || cells.high[i] < 0) task.colour = Colour::white;
-    return task;
+  } else {
+    task.source.enter(source_, cells);
+    task.colour = task.source.colour(box.cells(cube.level - 1));
   }
-  task.source.enter(source_, cells);
-  task.colour = task.source.colour(box.cells(cube.level - 1));
-  return task;
-}
-
-MoveProducer::Task MoveProducer::child(const Task& task, const Cube& cube, int) const {
-  if (task.above_source) return at(cube);
-  const MovedBack::Box box = back_.box(cube);
-  const CellRange cells = box.cells(cube.level);
-  Task below;
-  below.colour = task.source.colour(cells);
-  if (below.colour != Colour::gray) return below;
-  below.source.narrow(source_, task.source, cells);
-  below.colour = below.source.colour(box.cells(cube.level - 1));
-  return below;
 }
 
 std::array<Subtree, 8> MoveProducer::bricks(const Task& task, const Cube& cube) const {
@@ -74,9 +75,6 @@ std::array<Subtree, 8> MoveProducer::bricks(const Task& task, const Cube& cube) 
     return children;
   }
   const Neighbourhood& source = task.source;
-  std::array<Block, Neighbourhood::kCells> blocks;
-  source.for_each_cell([&](std::size_t cell) { source.bricks(cell, blocks[cell].data()); });
-
   const MovedBack::Point corner = back_.centre(cube.x, cube.y, cube.z);
   std::array<BrickLookUp, 8> look_ups;
   std::array<MovedBack::Point, 8> firsts;
@@ -89,16 +87,13 @@ std::array<Subtree, 8> MoveProducer::bricks(const Task& task, const Cube& cube) 
     children[octant] = Subtree::uniform(colour);
     if (colour != Colour::gray) continue;
     const CellRange cells = box.cells(3);
-    const std::size_t cell = source.index(cells.low[0], cells.low[1], cells.low[2]);
-    std::array<std::size_t, 3> next{};
     BrickLookUp& look_up = look_ups[count];
+    look_up.cell = static_cast<std::uint8_t>(source.index(cells.low[0], cells.low[1], cells.low[2]));
     for (std::size_t axis = 0, width = 1; axis < 3; ++axis, width *= Neighbourhood::kWidth) {
-      next[axis] = cells.high[axis] > cells.low[axis] ? width : 0;
+      look_up.next[axis] =
+          static_cast<std::uint8_t>((cells.high[axis] - cells.low[axis]) * static_cast<std::int64_t>(width));
       look_up.pair[axis] = static_cast<std::uint8_t>(box.low[axis] >> (kBits + 1) & 3);
-      look_up.first[axis] = cut(first[axis]);
     }
-    for (std::size_t i = 0; i < 8; ++i)
-      look_up.cells[i] = &blocks[cell + (i & 1 ? next[0] : 0) + (i & 2 ? next[1] : 0) + (i & 4 ? next[2] : 0)];
     firsts[count] = first;
     octants[count++] = static_cast<std::uint8_t>(octant);
   }
@@ -107,7 +102,7 @@ std::array<Subtree, 8> MoveProducer::bricks(const Task& task, const Cube& cube) 
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
         look_ups[i].first[axis] = static_cast<std::uint16_t>(cut(firsts[i][axis]) + side[axis]);
-    detail::look_up(cut_steps_, {look_ups.data(), count});
+    detail::look_up(cut_steps_, source, {look_ups.data(), count});
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint64_t unclear = look_ups[i].unclear;
       bits[i] |= look_ups[i].bits & ~unclear;

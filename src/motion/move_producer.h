@@ -23,7 +23,7 @@ class MoveProducer {
   /// `depth` is the target's. Requires: the source outlives the producer.
   MoveProducer(const FixedMotion& motion, const Octree& source, int depth);
 
-  Task root() const { return at({0, 0, 0, depth_ < 3 ? 3 : depth_}); }
+  Task root() const;
   Colour classify(const Task& task, const Cube&) const { return task.colour; }
   Task child(const Task& task, const Cube& cube, int octant) const;
   std::array<Subtree, 8> bricks(const Task& task, const Cube& cube) const;
@@ -31,7 +31,7 @@ class MoveProducer {
   std::uint64_t brick(const Task& task, const Cube&) const;
 
  private:
-  Task at(const Cube& cube) const;
+  void enter(Task& task, const Cube& cube) const;
   std::uint64_t exactly(const MovedBack::Point& first, const BrickLookUp& found, std::uint64_t which) const;
 
   MovedBack back_;

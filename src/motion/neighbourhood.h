@@ -7,6 +7,7 @@
 // bytes at once, and the neighbourhood of a target's child is read off its parent's without a search from the root.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -24,7 +25,10 @@ class SourceTree {
  public:
   explicit SourceTree(const Octree& octree) : level_(octree.depth() < 3 ? 3 : octree.depth()) {
     static constexpr std::uint64_t kFullByte = 0xFF;
-    for (int k = 2; k <= kMaxDepth; ++k) levels_[static_cast<std::size_t>(k)] = octree.words(k).data();
+    for (int k = 2; k <= kMaxDepth; ++k) {
+      const auto words = octree.words(k);
+      levels_[static_cast<std::size_t>(k)] = words.empty() ? &kFullByte : words.data();
+    }
     const Node root = octree.root();
     if (octree.depth() >= 3) {
       root_ = root.is_gray() ? root.word() : root.is_black() ? kBlack : kWhite;
@@ -40,7 +44,7 @@ class SourceTree {
   int level() const { return level_; }
   /// A gray node's word, or as if it were one: no child gray, and all black or all white.
   std::uint64_t root() const { return root_; }
-  /// The first word of a level.
+  /// The first word of a level, or of something that may be read.
   const std::uint64_t* words(int level) const { return levels_[static_cast<std::size_t>(level)]; }
 
   static constexpr std::uint64_t kWhite = 0, kBlack = 0xFF;
@@ -60,22 +64,34 @@ class Neighbourhood {
 
   /// The cells of the root's level. Requires: at most three on an axis.
   void enter(const SourceTree& tree, const CellRange& cells) {
-    fill(tree, tree.level(), cells, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      return (x | y | z) == 0 ? tree.root() : SourceTree::kWhite;
-    });
+    begin(tree.level(), cells);
+    for (std::int64_t z = cells.low[2]; z <= cells.high[2]; ++z)
+      for (std::int64_t y = cells.low[1]; y <= cells.high[1]; ++y)
+        for (std::int64_t x = cells.low[0]; x <= cells.high[0]; ++x)
+          set(index(x, y, z), (x | y | z) == 0 ? tree.root() : SourceTree::kWhite, tree.words(level_ - 1));
   }
 
   /// The cells of the level below another neighbourhood. Requires: it covers them; at most three on an axis; the level
   /// is 3 at least.
   void narrow(const SourceTree& tree, const Neighbourhood& from, const CellRange& cells) {
-    fill(tree, from.level_ - 1, cells, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      const std::size_t cell = from.index(x >> 1, y >> 1, z >> 1);
-      const auto bit = 1u << ((x & 1) | (y & 1) << 1 | (z & 1) << 2);
-      // Without a branch, because what is met is as good as random: the word of a gray child, or what stands for one.
-      static constexpr std::array<std::uint64_t, 2> kUniform = {SourceTree::kWhite, SourceTree::kBlack};
-      const std::uint64_t* gray = from.children_[cell] + std::popcount(from.gray_[cell] & (bit - 1));
-      const std::uint64_t* uniform = &kUniform[(from.black_[cell] & bit) != 0 ? 1 : 0];
-      return *((from.gray_[cell] & bit) != 0 ? gray : uniform);
+    begin(from.level_ - 1, cells);
+    // What a place on an axis adds to the index of the parent's cell and to the octant there. A third cell of a row is
+    // always done, as white where it is not asked for: how many there are is as good as random, and a wrong guess costs
+    // more.
+    std::array<std::array<std::uint8_t, kWidth>, 3> cell, octant;
+    for (std::size_t axis = 0, width = 1; axis < 3; ++axis, width *= kWidth)
+      for (std::size_t i = 0; i < kWidth; ++i) {
+        const std::int64_t place = std::min(cells.low[axis] + static_cast<std::int64_t>(i), cells.high[axis]);
+        cell[axis][i] = static_cast<std::uint8_t>(((place >> 1) - from.low_[axis]) * static_cast<std::int64_t>(width));
+        octant[axis][i] = static_cast<std::uint8_t>((place & 1) << axis);
+      }
+    const std::array<std::uint64_t, kWidth> asked = {~std::uint64_t{0}, size_[0] > 1 ? ~std::uint64_t{0} : 0,
+                                                     size_[0] > 2 ? ~std::uint64_t{0} : 0};
+    const std::uint64_t* below = tree.words(level_ - 1);
+    for_each_row([&](std::size_t y, std::size_t z) {
+      const unsigned row_cell = cell[1][y] + cell[2][z], row_octant = octant[1][y] + octant[2][z];
+      for (std::size_t x = 0; x < kWidth; ++x)
+        set(x + 3 * y + 9 * z, from.child(row_cell + cell[0][x], row_octant + octant[0][x]) & asked[x], below);
     });
   }
 
@@ -97,30 +113,20 @@ class Neighbourhood {
     return some == 0 ? Colour::white : hole == 0 ? Colour::black : Colour::gray;
   }
 
-  /// Where a cell stands in children() and blocks.
+  /// A cell's number, x + 3 (y + 3 z) from the lowest.
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
     return static_cast<std::size_t>((x - low_[0]) + 3 * (y - low_[1]) + 9 * (z - low_[2]));
   }
-
-  /// The eight bricks of a cell in octant order. Requires: a neighbourhood of level 3.
-  void bricks(std::size_t cell, std::uint64_t* result) const {
-    assert(level_ == 3);
-    const std::uint64_t* gray = children_[cell];
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      const unsigned bit = 1u << octant;
-      if ((gray_[cell] & bit) != 0)
-        result[octant] = *gray++;
-      else
-        result[octant] = (black_[cell] & bit) != 0 ? ~std::uint64_t{0} : 0;
-    }
-  }
-  /// All cells are this; visit(cell) for each of them.
+  /// Calls visit(y, z) for the rows of three cells; those that are not in the neighbourhood are white.
   template <class Visit>
-  void for_each_cell(Visit visit) const {
-    for (std::int64_t z = 0; z < size_[2]; ++z)
-      for (std::int64_t y = 0; y < size_[1]; ++y)
-        for (std::int64_t x = 0; x < size_[0]; ++x) visit(static_cast<std::size_t>(x + 3 * y + 9 * z));
+  void for_each_row(Visit visit) const {
+    for (std::size_t z = 0; z < size_[2]; ++z)
+      for (std::size_t y = 0; y < size_[1]; ++y) visit(y, z);
   }
+  /// The children of a cell that are black, the gray ones, and the words of these.
+  std::uint8_t black(std::size_t cell) const { return black_[cell]; }
+  std::uint8_t gray(std::size_t cell) const { return gray_[cell]; }
+  const std::uint64_t* words(std::size_t cell) const { return words_[cell]; }
 
  private:
   using Bytes = std::array<std::uint8_t, 32>;  // by cell, x + 3 (y + 3 z) from the lowest
@@ -148,31 +154,35 @@ class Neighbourhood {
     return word;
   }
 
-  template <class WordOf>
-  void fill(const SourceTree& tree, int level, const CellRange& cells, WordOf word_of) {
+  void begin(int level, const CellRange& cells) {
     assert(level >= 3);
     level_ = level;
     low_ = cells.low;
     black_ = gray_ = {};
     for (std::size_t i = 0; i < 3; ++i) {
-      size_[i] = cells.high[i] - cells.low[i] + 1;
-      assert(size_[i] >= 1 && size_[i] <= 3);
+      assert(cells.low[i] <= cells.high[i] && cells.high[i] < cells.low[i] + 3);
+      size_[i] = static_cast<std::size_t>(cells.high[i] - cells.low[i] + 1);
     }
-    const std::uint64_t* below = tree.words(level - 1);
-    for (std::int64_t z = 0; z < size_[2]; ++z)
-      for (std::int64_t y = 0; y < size_[1]; ++y)
-        for (std::int64_t x = 0; x < size_[0]; ++x) {
-          const auto cell = static_cast<std::size_t>(x + 3 * y + 9 * z);
-          const std::uint64_t word = word_of(low_[0] + x, low_[1] + y, low_[2] + z);
-          black_[cell] = static_cast<std::uint8_t>(word);
-          gray_[cell] = static_cast<std::uint8_t>(word >> 8);
-          children_[cell] = below + (word >> 16);
-        }
   }
 
-  Bytes black_, gray_;                                 // children of each cell
-  std::array<const std::uint64_t*, kCells> children_;  // of each cell: the first of its gray ones, if any
-  std::array<std::int64_t, 3> low_, size_;             // the cells there are
+  void set(std::size_t cell, std::uint64_t word, const std::uint64_t* below) {
+    black_[cell] = static_cast<std::uint8_t>(word);
+    gray_[cell] = static_cast<std::uint8_t>(word >> 8);
+    words_[cell] = below + (word >> 16);
+  }
+
+  // The word of a child, or what stands for one. Without a branch, because what is met is as good as random.
+  std::uint64_t child(std::size_t cell, unsigned octant) const {
+    const std::uint64_t gray = gray_[cell], black = black_[cell];
+    const std::uint64_t is_gray = -(gray >> octant & 1), is_black = -(black >> octant & 1);
+    const auto before = static_cast<std::uint64_t>(std::popcount(gray & ((std::uint64_t{1} << octant) - 1)));
+    return (words_[cell][before & is_gray] & is_gray) | (SourceTree::kBlack & is_black);
+  }
+
+  Bytes black_, gray_;                              // children of each cell
+  std::array<const std::uint64_t*, kCells> words_;  // of each cell's gray children; some word if there are none
+  std::array<std::int64_t, 3> low_;
+  std::array<std::size_t, 3> size_;  // cells on each axis
   int level_;
 };
 
