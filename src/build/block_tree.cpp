@@ -51,7 +51,7 @@ Octree BlockTree::finish(Frame frame) {
   NodeArrays arrays;
   for (int level = 2; level < kLevel; ++level) {
     std::size_t count = 0;
-    for (const PackedBlock& block : blocks_) count += block.count(level);
+    for (const PackedNode& block : blocks_) count += block.count(level);
     arrays.reserve(level, count);
   }
   const Subtree top = join({0, 0, 0, depth_}, 0, arrays);

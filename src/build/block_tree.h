@@ -14,7 +14,7 @@ namespace blackleaf::detail {
 
 class BlockTree {
  public:
-  static constexpr int kLevel = PackedBlock::kLevel;
+  static constexpr int kLevel = 6;
   static constexpr std::int32_t kSide = std::int32_t{1} << kLevel;
 
   /// Every voxel outside [low, high) is white. Requires: depth > kLevel; 0 <= low < high <= 2^depth on every axis.
@@ -25,7 +25,7 @@ class BlockTree {
   template <class Producer>
   void produce(const Producer& producer, const Cube& block, NodeArrays& scratch) {
     auto task = producer.root();
-    blocks_[index(block)] = scratch.pack(produce_node(producer, task, block, table(block), scratch));
+    blocks_[index(block)] = scratch.pack(produce_node(producer, task, block, table(block), scratch), kLevel);
   }
 
   /// The octree of the blocks; those that were not made are white. Leaves the object empty.
@@ -40,7 +40,7 @@ class BlockTree {
 
   int depth_;
   std::array<std::int64_t, 3> first_, count_;  // blocks
-  std::vector<PackedBlock> blocks_;            // x fastest
+  std::vector<PackedNode> blocks_;             // x fastest
 };
 
 }  // namespace blackleaf::detail

@@ -11,10 +11,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "blackleaf/curve.h"
 #include "blackleaf/octree.h"
+#include "word_array.h"
 
 namespace blackleaf::detail {
 
@@ -29,21 +29,22 @@ struct Subtree {
   }
 };
 
-/// A finished node of level 6, a block of 64^3 voxels, and all below it, in one piece of memory: for those who finish
-/// blocks out of order. Sixteen bytes if it has one colour.
-class PackedBlock {
+/// A finished node and all below it, in one piece of memory: for those who finish nodes out of order. Sixteen bytes if
+/// it has one colour.
+class PackedNode {
  public:
-  static constexpr int kLevel = 6;
-
   bool is_white() const { return colour_ == Colour::white; }
-  /// Nodes stored of a level. Requires: 2 <= level < kLevel.
-  std::size_t count(int level) const { return words_ ? words_[1] >> (16 * (level - 2)) & 0xFFFF : 0; }
+  /// Nodes stored of a level. Requires: level >= 2.
+  std::size_t count(int level) const {
+    return words_ && level < level_ ? words_[static_cast<std::size_t>(level - 1)] : 0;
+  }
 
  private:
   friend class NodeArrays;
-  // The node's word, the counts of the levels 2..5 in 16 bits each (level 2 has at most 4096), the words of the levels.
+  // The node's word, the counts of the levels from 2 to the node's, the words of these levels.
   std::unique_ptr<std::uint64_t[]> words_;
   Colour colour_ = Colour::white;
+  std::uint8_t level_ = 0;
 };
 
 /// The first words of all levels of a tree.
@@ -87,20 +88,19 @@ class NodeArrays {
     return {black | gray << 8 | first << 16, Colour::gray};
   }
 
-  /// Appends the nodes of a later stretch of the curve and returns its top node as a node of this one.
-  /// `level` is the level of that node. `stretch` is left empty.
-  Subtree append(NodeArrays& stretch, Subtree top, int level);
-
   /// Appends all that is below a gray node of a finished tree, with black and white exchanged if `exchange`, and
   /// returns the node as one of this object: level by level, because a node's descendants of one level stand together.
   /// Requires: 3 <= level; the tree has the node; it is entered here with the same table as there. O(words copied).
   Subtree copy(const LevelWords& from, std::uint64_t word, int level, bool exchange);
 
-  /// Moves a block that has been closed here and the nodes below it, all there are, out; the room for them stays.
-  /// Requires: `top` was made by this object and is of level 6.
-  PackedBlock pack(const Subtree& top);
-  /// Appends a block as append() does a stretch; its memory is given back.
-  Subtree append(PackedBlock block);
+  /// Moves a node of some level that has been closed here and the nodes below it, all there are, out; the room for them
+  /// stays. Requires: `top` was made by this object; level >= 3.
+  PackedNode pack(const Subtree& top, int level);
+  /// Appends the nodes of a later stretch of the curve and returns its top node as a node of this object; its memory is
+  /// given back.
+  Subtree append(PackedNode node);
+  /// The same for nodes that another object has made; `level` is the level of the top node. `stretch` is left empty.
+  Subtree append(NodeArrays& stretch, Subtree top, int level);
   /// Makes room for so many more nodes of a level.
   void reserve(int level, std::size_t count);
   /// Nodes stored of a level.
@@ -113,7 +113,7 @@ class NodeArrays {
   std::size_t size() const;
 
  private:
-  std::array<std::vector<std::uint64_t>, kMaxDepth + 1> levels_;
+  std::array<WordArray, kMaxDepth + 1> levels_;
 };
 
 /// A word of level >= 3 whose children moved up by `offset` places.

@@ -59,13 +59,15 @@ bool Octree::contains(std::int64_t x, std::int64_t y, std::int64_t z) const {
 std::span<const std::uint64_t> Octree::words(int level) const {
   assert(level >= 0 && level <= kMaxDepth);
   if (!storage_->tree) return {};
-  const auto k = static_cast<std::size_t>(level);
-  return {storage_->tree->levels[k], storage_->tree->counts[k]};
+  const auto& words = storage_->tree->of_level[static_cast<std::size_t>(level)];
+  return {words.data(), words.size()};
 }
 
 std::size_t Octree::memory_bytes() const {
   std::size_t bytes = sizeof(Octree) + sizeof(Storage);
-  if (storage_->tree) bytes += sizeof(detail::Words) + storage_->tree->words.size() * sizeof(std::uint64_t);
+  if (!storage_->tree) return bytes;
+  bytes += sizeof(detail::Words);
+  for (const auto& words : storage_->tree->of_level) bytes += words.size() * sizeof(std::uint64_t);
   return bytes;
 }
 
@@ -73,7 +75,8 @@ bool operator==(const Octree& a, const Octree& b) {
   const auto &s = *a.storage_, &t = *b.storage_;
   if (s.depth != t.depth || s.root != t.root) return false;
   if (s.tree == t.tree) return true;
-  return s.tree->counts == t.tree->counts && s.tree->words == t.tree->words;
+  return std::ranges::equal(s.tree->of_level, t.tree->of_level,
+                            [](const auto& words, const auto& others) { return std::ranges::equal(words, others); });
 }
 
 namespace detail {
@@ -120,16 +123,50 @@ Subtree NodeArrays::copy(const LevelWords& from, std::uint64_t word, int level, 
     const std::uint64_t by = levels_[below - 1].size() - next.begin;
     auto& words = levels_[below];
     const std::size_t before = words.size();
-    words.insert(words.end(), from[below] + interval.begin, from[below] + interval.end);
-    for (std::size_t i = before; i < words.size(); ++i) words[i] = moved(words[i], by);
+    words.append(from[below] + interval.begin, interval.end - interval.begin);
+    for (auto* copied = words.begin() + before; copied != words.end(); ++copied) *copied = moved(*copied, by);
     interval = next;
   }
   auto& bricks = levels_[2];
   const std::size_t before = bricks.size();
-  if (below == 2) bricks.insert(bricks.end(), from[2] + interval.begin, from[2] + interval.end);
+  if (below == 2) bricks.append(from[2] + interval.begin, interval.end - interval.begin);
   if (exchange)
-    for (std::size_t i = before; i < bricks.size(); ++i) bricks[i] = ~bricks[i];
+    for (auto* copied = bricks.begin() + before; copied != bricks.end(); ++copied) *copied = ~*copied;
   return top;
+}
+
+PackedNode NodeArrays::pack(const Subtree& top, int level) {
+  assert(level >= 3);
+  PackedNode node;
+  node.colour_ = top.colour;
+  node.level_ = static_cast<std::uint8_t>(level);
+  if (top.colour != Colour::gray) return node;
+  const auto end = static_cast<std::size_t>(level);
+  node.words_ = std::make_unique_for_overwrite<std::uint64_t[]>(end - 1 + size());
+  node.words_[0] = top.word;
+  std::uint64_t* next = &node.words_[end - 1];
+  for (std::size_t k = 2; k < end; ++k) {
+    node.words_[k - 1] = levels_[k].size();
+    next = std::copy(levels_[k].begin(), levels_[k].end(), next);
+    levels_[k].clear();
+  }
+  return node;
+}
+
+Subtree NodeArrays::append(PackedNode node) {
+  if (!node.words_) return Subtree::uniform(node.colour_);
+  const std::uint64_t* next = &node.words_[node.level_ - 1u];
+  std::uint64_t offset = 0;  // of the level below
+  for (int k = 2; k < node.level_; ++k) {
+    auto& level = levels_[static_cast<std::size_t>(k)];
+    const std::size_t before = level.size(), count = node.count(k);
+    level.append(next, count);
+    if (k >= 3)
+      for (std::uint64_t* word = level.begin() + before; word != level.end(); ++word) *word = shifted(*word, offset);
+    next += count;
+    offset = before;
+  }
+  return {shifted(node.words_[0], offset), Colour::gray};
 }
 
 Subtree NodeArrays::append(NodeArrays& stretch, Subtree top, int level) {
@@ -139,44 +176,12 @@ Subtree NodeArrays::append(NodeArrays& stretch, Subtree top, int level) {
     auto& from = stretch.levels_[k];
     if (k >= 3)
       for (auto& word : from) word = shifted(word, offset[k - 1]);
-    levels_[k].insert(levels_[k].end(), from.begin(), from.end());
-    std::vector<std::uint64_t>().swap(from);
+    levels_[k].append(from.data(), from.size());
+    from = {};
   }
   if (top.colour == Colour::gray && level >= 3)
     top.word = shifted(top.word, offset[static_cast<std::size_t>(level - 1)]);
   return top;
-}
-
-PackedBlock NodeArrays::pack(const Subtree& top) {
-  PackedBlock block;
-  block.colour_ = top.colour;
-  if (top.colour != Colour::gray) return block;
-  block.words_ = std::make_unique_for_overwrite<std::uint64_t[]>(2 + size());
-  block.words_[0] = top.word;
-  block.words_[1] = 0;
-  std::uint64_t* next = &block.words_[2];
-  for (std::size_t k = 2; k < PackedBlock::kLevel; ++k) {
-    block.words_[1] |= std::uint64_t{levels_[k].size()} << (16 * (k - 2));
-    next = std::copy(levels_[k].begin(), levels_[k].end(), next);
-    levels_[k].clear();
-  }
-  return block;
-}
-
-Subtree NodeArrays::append(PackedBlock block) {
-  if (!block.words_) return Subtree::uniform(block.colour_);
-  const std::uint64_t* next = &block.words_[2];
-  std::uint64_t offset = 0;  // of the level below
-  for (int k = 2; k < PackedBlock::kLevel; ++k) {
-    auto& level = levels_[static_cast<std::size_t>(k)];
-    const std::size_t before = level.size(), count = block.count(k);
-    level.insert(level.end(), next, next + count);
-    if (k >= 3)
-      for (std::size_t i = before; i < level.size(); ++i) level[i] = shifted(level[i], offset);
-    next += count;
-    offset = before;
-  }
-  return {shifted(block.words_[0], offset), Colour::gray};
 }
 
 void NodeArrays::reserve(int level, std::size_t count) {
@@ -191,16 +196,10 @@ Octree NodeArrays::finish(int depth, Subtree root, Frame frame) {
   }
   levels_[static_cast<std::size_t>(depth)].push_back(root.word);
   auto tree = std::make_shared<Words>();
-  tree->words.reserve(size());
-  for (std::size_t k = levels_.size(); k-- > 0;) {
-    tree->counts[k] = levels_[k].size();
-    tree->words.insert(tree->words.end(), levels_[k].begin(), levels_[k].end());
-    std::vector<std::uint64_t>().swap(levels_[k]);
-  }
-  const std::uint64_t* next = tree->words.data();
-  for (std::size_t k = levels_.size(); k-- > 0;) {
-    tree->levels[k] = next;
-    next += tree->counts[k];
+  tree->of_level = std::exchange(levels_, {});
+  for (std::size_t k = 0; k < tree->levels.size(); ++k) {
+    tree->of_level[k].shrink_to_fit();
+    tree->levels[k] = tree->of_level[k].data();
   }
   return Octree(
       std::make_shared<const Octree::Storage>(Octree::Storage{depth, Colour::gray, std::move(tree), std::move(frame)}));

@@ -21,8 +21,8 @@ namespace blackleaf::detail {
 class Progress {
  public:
   Progress(const Work& work, std::size_t steps) : work_(work), steps_(steps) {}
-  void step() {
-    const std::size_t done = ++done_;
+  void step(std::size_t steps = 1) {
+    const std::size_t done = done_ += steps;
     if (!work_.progress) return;
     const std::lock_guard lock(mutex_);
     if (!work_.progress(static_cast<double>(done) / static_cast<double>(steps_)))

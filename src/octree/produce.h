@@ -34,6 +34,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <vector>
 
 #include "blackleaf/work.h"
@@ -42,17 +43,19 @@
 
 namespace blackleaf::detail {
 
-/// The node of level 2 at least that `cube` is, entered with `table`; `task` is what the producer knows of it.
 template <class Producer>
 Subtree produce_node(const Producer& producer, typename Producer::Task& task, const Cube& cube, std::uint8_t table,
-                     NodeArrays& arrays) {
+                     NodeArrays& arrays);
+
+/// produce_node() for a node of which the producer has said that it is gray.
+template <class Producer>
+Subtree produce_gray_node(const Producer& producer, typename Producer::Task& task, const Cube& cube, std::uint8_t table,
+                          NodeArrays& arrays) {
   if constexpr (requires { producer.subtree(task, cube, table, arrays); }) {
     return producer.subtree(task, cube, table, arrays);
   } else {
     if constexpr (requires { producer.bricks(task, cube); })
       if (cube.level == 3) return arrays.close(3, producer.bricks(task, cube));
-    const Colour colour = producer.classify(task, cube);
-    if (colour != Colour::gray) return Subtree::uniform(colour);
     if (cube.level == 2) return Subtree::brick(producer.brick(task, cube));
     std::array<Subtree, 8> children;
     for (const curve::Step step : curve::kSteps[table]) {
@@ -62,6 +65,22 @@ Subtree produce_node(const Producer& producer, typename Producer::Task& task, co
     }
     return arrays.close(cube.level, children);
   }
+}
+
+/// The node of level 2 at least that `cube` is, entered with `table`; `task` is what the producer knows of it.
+template <class Producer>
+Subtree produce_node(const Producer& producer, typename Producer::Task& task, const Cube& cube, std::uint8_t table,
+                     NodeArrays& arrays) {
+  bool ask = true;
+  if constexpr (requires { producer.subtree(task, cube, table, arrays); })
+    ask = false;
+  else if constexpr (requires { producer.bricks(task, cube); })
+    ask = cube.level != 3;
+  if (ask) {
+    const Colour colour = producer.classify(task, cube);
+    if (colour != Colour::gray) return Subtree::uniform(colour);
+  }
+  return produce_gray_node(producer, task, cube, table, arrays);
 }
 
 template <class Producer>
@@ -79,20 +98,19 @@ class Production {
       Task task = producer_.root();
       top = produce_node(producer_, task, root, 0, arrays);
       if (depth_ == 1) top = byte(top);
+    } else if (thread_count(work_) == 1) {
+      reserve(arrays);
+      Progress progress(work_, std::size_t{1} << (3 * kStretchLevels));
+      Task task = producer_.root();
+      top = walk(task, root, 0, arrays, progress);
     } else {
       outline(producer_.root(), root, 0);
-      if constexpr (requires { producer_.reserve(arrays); }) producer_.reserve(arrays);
-      if (thread_count(work_) == 1) {
-        // No need for arrays of their own: one thread walks the curve.
-        for_each_index(stretches_.size(), work_, [&](std::size_t i) { produce(stretches_[i], arrays); });
-      } else {
-        std::vector<NodeArrays> own(stretches_.size());
-        for_each_index(own.size(), work_, [&](std::size_t i) { produce(stretches_[i], own[i]); });
-        for (std::size_t i = 0; i < own.size(); ++i)
-          stretches_[i].result = arrays.append(own[i], stretches_[i].result, stretches_[i].cube.level);
-      }
-      std::size_t next_part = 0, next_stretch = 0;
-      top = join(root, 0, next_part, next_stretch, arrays);
+      std::vector<PackedNode> nodes(stretches_.size());
+      for_each_index(nodes.size(), work_, [&](std::size_t i) { nodes[i] = produce(stretches_[i]); });
+      stretches_.clear();
+      reserve(arrays);
+      std::size_t next_part = 0, next_node = 0;
+      top = join(root, 0, nodes, next_part, next_node, arrays);
     }
     return arrays.finish(depth_, top, std::move(frame));
   }
@@ -105,11 +123,39 @@ class Production {
     Task task;
     Cube cube;
     std::uint8_t table;
-    Subtree result;
   };
 
-  void produce(Stretch& stretch, NodeArrays& arrays) const {
-    stretch.result = produce_node(producer_, stretch.task, stretch.cube, stretch.table, arrays);
+  void reserve(NodeArrays& arrays) const {
+    if constexpr (requires { producer_.reserve(arrays); }) producer_.reserve(arrays);
+  }
+
+  PackedNode produce(Stretch& stretch) const {
+    NodeArrays arrays;
+    return arrays.pack(produce_gray_node(producer_, stretch.task, stretch.cube, stretch.table, arrays),
+                       stretch.cube.level);
+  }
+
+  // The same as produce_node, and progress is told.
+  Subtree walk(Task& task, const Cube& cube, std::uint8_t table, NodeArrays& arrays, Progress& progress) const {
+    const int levels = cube.level - (depth_ - kStretchLevels);  // down to stretches
+    Subtree result;
+    if (levels == 0) {
+      result = produce_node(producer_, task, cube, table, arrays);
+    } else {
+      const Colour colour = producer_.classify(task, cube);
+      if (colour == Colour::gray) {
+        std::array<Subtree, 8> children;
+        for (const curve::Step step : curve::kSteps[table]) {
+          const Cube child = cube.child(step.octant);
+          auto below = producer_.child(task, child, step.octant);
+          children[step.octant] = walk(below, child, step.table, arrays, progress);
+        }
+        return arrays.close(cube.level, children);
+      }
+      result = Subtree::uniform(colour);
+    }
+    progress.step(std::size_t{1} << (3 * levels));
+    return result;
   }
 
   static Subtree byte(Subtree top) {
@@ -120,36 +166,35 @@ class Production {
 
   // Walks the top of the tree in curve order; writes what it decides to parts_ and leaves the rest as stretches.
   void outline(Task task, const Cube& cube, std::uint8_t table) {
-    if (cube.level == depth_ - kStretchLevels) {
-      parts_.push_back(Colour::gray);
-      stretches_.push_back({std::move(task), cube, table, {}});
-      return;
-    }
     const Colour colour = producer_.classify(task, cube);
     parts_.push_back(colour);
     if (colour != Colour::gray) return;
+    if (cube.level == depth_ - kStretchLevels) {
+      stretches_.push_back({std::move(task), cube, table});
+      return;
+    }
     for (const curve::Step step : curve::kSteps[table]) {
       const Cube child = cube.child(step.octant);
       outline(producer_.child(task, child, step.octant), child, step.table);
     }
   }
 
-  Subtree join(const Cube& cube, std::uint8_t table, std::size_t& part, std::size_t& stretch,
-               NodeArrays& arrays) const {
+  Subtree join(const Cube& cube, std::uint8_t table, std::vector<PackedNode>& nodes, std::size_t& part,
+               std::size_t& node, NodeArrays& arrays) const {
     const Colour colour = parts_[part++];
-    if (cube.level == depth_ - kStretchLevels) return stretches_[stretch++].result;
     if (colour != Colour::gray) return Subtree::uniform(colour);
+    if (cube.level == depth_ - kStretchLevels) return arrays.append(std::move(nodes[node++]));
     std::array<Subtree, 8> children;
     for (const curve::Step step : curve::kSteps[table])
-      children[step.octant] = join(cube.child(step.octant), step.table, part, stretch, arrays);
+      children[step.octant] = join(cube.child(step.octant), step.table, nodes, part, node, arrays);
     return arrays.close(cube.level, children);
   }
 
   const Producer& producer_;
   const int depth_;
   const Work& work_;
-  std::vector<Colour> parts_;       // verdicts on the nodes above the stretches, in pre-order along the curve
-  std::vector<Stretch> stretches_;  // in curve order
+  std::vector<Colour> parts_;      // verdicts on the nodes above the stretches, in pre-order along the curve
+  std::deque<Stretch> stretches_;  // in curve order; not a vector: tasks may be large
 };
 
 template <class Producer>

@@ -4,18 +4,17 @@
 #include <array>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "blackleaf/octree.h"
+#include "word_array.h"
 
 namespace blackleaf {
 
 namespace detail {
 
-/// The words of all levels in one block, from the root down. Immutable once an Octree holds it.
+/// The words of all levels. Immutable once an Octree holds it.
 struct Words {
-  std::vector<std::uint64_t> words;
-  std::array<std::size_t, kMaxDepth + 1> counts{};           // words of each level
+  std::array<WordArray, kMaxDepth + 1> of_level;
   std::array<const std::uint64_t*, kMaxDepth + 1> levels{};  // first word of each level
 };
 

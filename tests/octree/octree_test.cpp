@@ -192,14 +192,10 @@ TEST(Classifier, CanBeInterrupted) {
 // Builds an octree from raw words, so that validate() has something to find.
 Octree forged(int depth, std::vector<std::vector<std::uint64_t>> levels_from_root) {
   auto tree = std::make_shared<detail::Words>();
-  for (const auto& level : levels_from_root) tree->words.insert(tree->words.end(), level.begin(), level.end());
-  std::size_t at = 0;
-  tree->levels.fill(tree->words.data() + tree->words.size());
   for (std::size_t i = 0; i < levels_from_root.size(); ++i) {
     const std::size_t level = static_cast<std::size_t>(depth) - i;
-    tree->levels[level] = tree->words.data() + at;
-    tree->counts[level] = levels_from_root[i].size();
-    at += levels_from_root[i].size();
+    tree->of_level[level].append(levels_from_root[i].data(), levels_from_root[i].size());
+    tree->levels[level] = tree->of_level[level].data();
   }
   return Octree(std::make_shared<const Octree::Storage>(Octree::Storage{depth, Colour::gray, std::move(tree), {}}));
 }
