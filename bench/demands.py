@@ -53,6 +53,18 @@ def demands():
             yield f"file/{side}: {who}", lambda f, k=f"file/{side}", w=who: f.times(k, w), "at least", 1
         for key in ("save", "load"):
             yield f"{key}/{side}/t2: MB/s", lambda f, k=key, s=side: f.megabytes_a_second(k, s), "at least", 200
+    for side, openvdb, blocks in (("512", 30, 15), ("1024", 60, 50)):
+        key = f"move/{side}/t1"
+        yield f"{key}: OpenVDB", lambda f, k=key: f.times(k, "openvdb"), "at least", openvdb
+        yield f"{key}: dense, in blocks", lambda f, k=key: f.times(k, "dense-blocks"), "at least", blocks
+    yield "move/512/t1: WA87 as printed", lambda f: f.times("move/512/t1", "paper"), "at least", 50
+    yield "move/1024: two threads", lambda f: f.ours("move/1024/t1") / f.ours("move/1024/t2"), "at least", 1.8
+    yield "move/1024/t2: ms", lambda f: f.ours("move/1024/t2") * 1e3, "at most", 40
+    for side in (256, 512, 1024, 2048):
+        smaller, larger = f"move/{side}/t1", f"move/{2 * side}/t1"
+        yield f"{larger}: growth", lambda f, s=smaller, l=larger: f.growth(s, l), "at most", 4.3
+    key = "move-memory/1024"
+    yield f"{key}: of source and target", lambda f, k=key: 1 / f.times(k, "source+target"), "at most", 1.1
     yield "curve/decode: ns", lambda f: f.ours("curve/decode") / NANOSECOND, "at most", 12
     yield "curve/encode: ns", lambda f: f.ours("curve/encode") / NANOSECOND, "at most", 12
     yield "curve/walk: ns a voxel", lambda f: f.ours("curve/walk") / NANOSECOND, "at most", 1.5

@@ -1,10 +1,13 @@
 // move/N/tT: 30 degrees about (1,1,1) through the universe's centre and a translation of (5.3, -7.1, 2.9) voxels.
+// move-memory/N: the most bytes at once while it is done, with the source.
 #include "blackleaf/move.h"
 
 #include <cmath>
 
+#include "allocations.h"
 #include "contenders.h"
 #include "inputs.h"
+#include "octree/produce.h"
 #include "papers/wa87.h"
 
 namespace blackleaf::bench {
@@ -22,42 +25,125 @@ void paper(benchmark::State& state, int depth) {
   for (auto _ : state) benchmark::DoNotOptimize(move(source, motion));
 }
 
-// Dense volumes: every target voxel's centre moved back, the nearest source voxel taken, row by row.
-void dense(benchmark::State& state, int depth) {
+// The straightforward way from the target's side, which the product was a step up from: each target node's box, moved
+// back, is looked up in the source from the root; a brick's voxels one by one. In floating point.
+class Naive {
+ public:
+  struct Task {};
+
+  Naive(const Octree& source, const Motion& motion) : source_(source), back_(motion.inverse()) {}
+
+  Task root() const { return {}; }
+  Task child(const Task&, const Cube&, int) const { return {}; }
+  Colour classify(const Task&, const Cube& cube) const {
+    const double half = 0.5 * cube.side();
+    const Eigen::Vector3d centre = back_(Eigen::Vector3d(cube.x, cube.y, cube.z).array() + half);
+    const Eigen::Vector3d reach = back_.rotation().cwiseAbs() * Eigen::Vector3d::Constant(half - 0.5);
+    const Eigen::Vector3d low = centre - reach, high = centre + reach;
+    const Colour colour = of_box(source_.root(), source_.universe(), low, high);
+    const bool within = low.minCoeff() >= 0 && high.maxCoeff() <= source_.side();
+    return colour == Colour::black && !within ? Colour::gray : colour;
+  }
+  std::uint64_t brick(const Task&, const Cube& cube) const {
+    std::uint64_t bits = 0;
+    for (unsigned bit = 0; bit < 64; ++bit) {
+      const Eigen::Vector3d at = back_(Eigen::Vector3d(cube.x + static_cast<int>(detail::brick_x(bit)) + 0.5,
+                                                       cube.y + static_cast<int>(detail::brick_y(bit)) + 0.5,
+                                                       cube.z + static_cast<int>(detail::brick_z(bit)) + 0.5));
+      const auto voxel = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
+      bits |= std::uint64_t{source_.contains(voxel(at.x()), voxel(at.y()), voxel(at.z()))} << bit;
+    }
+    return bits;
+  }
+
+ private:
+  // White, black, or both, of what a box sees of a node that it meets.
+  static Colour of_box(const Node& node, const Cube& cube, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    if (!node.is_gray()) return node.colour();
+    bool white = false, black = false;
+    for (int octant = 0; octant < 8 && !(white && black); ++octant) {
+      const Cube child = cube.child(octant);
+      const Eigen::Vector3d begin(child.x, child.y, child.z);
+      if ((high.array() < begin.array()).any() || (low.array() > begin.array() + child.side()).any()) continue;
+      const Colour colour = of_box(node.child(octant), child, low, high);
+      white = white || colour != Colour::black;
+      black = black || colour != Colour::white;
+    }
+    return white && black ? Colour::gray : black ? Colour::black : Colour::white;
+  }
+
+  const Octree& source_;
+  Motion back_;
+};
+
+void naive(benchmark::State& state, int depth) {
+  const Octree& octree = bunny(depth);
+  const Motion motion = bunny_motion(depth);
+  for (auto _ : state) benchmark::DoNotOptimize(detail::produce(Naive(octree, motion), depth, octree.frame(), {1, {}}));
+}
+
+// Dense volumes: every target voxel's centre moved back, the nearest source voxel taken; in blocks of this side, so
+// that what is read stays in the cache. The side of the universe: row by row.
+void dense(benchmark::State& state, int depth, std::int64_t block) {
   const auto& source = bunny_volume(depth);
   const Motion back = bunny_motion(depth).inverse();
   const Eigen::Vector3d step = back.rotation().col(0);
   const std::int64_t side = std::int64_t{1} << depth;
   const auto sides = static_cast<double>(side);
-  std::vector<std::uint8_t> target(source.size());
+  Volume target(source.size());
+  const auto row = [&](std::int64_t x0, std::int64_t y, std::int64_t z) {
+    std::uint8_t* out = &target[static_cast<std::size_t>((z << depth | y) << depth | x0)];
+    Eigen::Vector3d at = back(
+        Eigen::Vector3d(static_cast<double>(x0) + 0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5));
+    for (std::int64_t x = 0; x < block; ++x, at += step) {
+      const bool inside = at.minCoeff() >= 0 && at.maxCoeff() < sides;
+      *out++ = inside ? source[static_cast<std::size_t>(
+                            (static_cast<std::int64_t>(at.z()) << depth | static_cast<std::int64_t>(at.y())) << depth |
+                            static_cast<std::int64_t>(at.x()))]
+                      : std::uint8_t{0};
+    }
+  };
   for (auto _ : state) {
-    std::uint8_t* out = target.data();
-    for (std::int64_t z = 0; z < side; ++z)
-      for (std::int64_t y = 0; y < side; ++y) {
-        Eigen::Vector3d at = back(Eigen::Vector3d(0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5));
-        for (std::int64_t x = 0; x < side; ++x, at += step) {
-          const bool inside = at.minCoeff() >= 0 && at.maxCoeff() < sides;
-          *out++ = inside
-                       ? source[static_cast<std::size_t>(
-                             (static_cast<std::int64_t>(at.z()) << depth | static_cast<std::int64_t>(at.y())) << depth |
-                             static_cast<std::int64_t>(at.x()))]
-                       : std::uint8_t{0};
-        }
-      }
+    for (std::int64_t z = 0; z < side; z += block)
+      for (std::int64_t y = 0; y < side; y += block)
+        for (std::int64_t x = 0; x < side; x += block)
+          for (std::int64_t k = z; k < z + block; ++k)
+            for (std::int64_t j = y; j < y + block; ++j) row(x, j, k);
     benchmark::ClobberMemory();
   }
+}
+
+std::size_t memory(int depth) {
+  const Octree& octree = bunny(depth);
+  const Motion motion = bunny_motion(depth);
+  return octree.memory_bytes() + peak_allocated([&] {
+           benchmark::DoNotOptimize(move(octree, motion, Leaving::error, {1, {}}));
+         });
 }
 
 }  // namespace
 
 void add_move() {
-  for (const int depth : {7, 8, 9, 10})
+  const auto few = [](benchmark::internal::Benchmark* added) { added->Iterations(1)->Repetitions(3); };
+  for (const int depth : {8, 9, 10, 11, 12})
     for (const int threads : {1, 2}) {
       const std::string key = "move/" + side_name(depth) + "/t" + std::to_string(threads);
       contender(key, "ours", [=](benchmark::State& s) { ours(s, depth, threads); });
-      if (threads == 1 && depth <= 9) contender(key, "paper", [=](benchmark::State& s) { paper(s, depth); });
-      if (threads == 1 && depth <= 9) contender(key, "dense", [=](benchmark::State& s) { dense(s, depth); });
+      if (threads != 1 || depth > 10) continue;
+      contender(key, "naive", [=](benchmark::State& s) { naive(s, depth); });
+      few(contender(key, "dense-blocks", [=](benchmark::State& s) { dense(s, depth, 32); }));
+      if (depth > 9) continue;
+      few(contender(key, "paper", [=](benchmark::State& s) { paper(s, depth); }));
+      few(contender(key, "dense", [=](benchmark::State& s) { dense(s, depth, std::int64_t{1} << depth); }));
     }
+  for (const int depth : {9, 10, 11}) {
+    const std::string key = "move-memory/" + side_name(depth);
+    sized(key, "ours", [=] { return memory(depth); });
+    sized(key, "source+target", [=] {
+      const Octree& source = bunny(depth);
+      return source.memory_bytes() + moved_bunny(depth).memory_bytes();
+    });
+  }
 }
 
 }  // namespace blackleaf::bench

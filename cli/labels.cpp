@@ -90,7 +90,7 @@ Octree read_solid(Session& session, const std::string& path, const Label& label)
 }
 
 void write_labels(Session& session, const LabelMap& labels, const std::string& path, const std::string& source,
-                  const Json& options) {
+                  const Json& options, const Json& more, const std::string& before) {
   std::vector<std::uint32_t> there = different_labels(labels);
   std::erase(there, 0u);
   if (there.empty()) session.warn("no voxel has a label but 0");
@@ -103,10 +103,11 @@ void write_labels(Session& session, const LabelMap& labels, const std::string& p
   Measures solid;
   if (telling) solid = session.stage("measure", [&](const Work&) { return measure(octree_from_labels(labels)); });
   session.write_stage([&] { save(labels, path, metadata); });
+  if (!before.empty()) print_out(before);
   if (!telling) return;
   const std::optional<std::uint64_t> file_bytes = size_of(path);
-  if (session.json())
-    print_out(Json{{"output", path},
+  if (session.json()) {
+    Json report = {{"output", path},
                    {"depth", labels.depth()},
                    {"volume", solid.volume},
                    {"black_leaves", solid.black_leaves},
@@ -114,11 +115,14 @@ void write_labels(Session& session, const LabelMap& labels, const std::string& p
                    {"label_count", there.size()},
                    {"label_runs", labels.run_count()},
                    {"memory_bytes", labels.memory_bytes()},
-                   {"file_bytes", file_bytes ? Json(*file_bytes) : Json()}});
-  else
-    print_out(fmt::format("{}: depth {}, {}, {}, {}{}\n", path, labels.depth(), counted_labels(there.size()),
-                          counted(solid.volume, "voxel"), counted(labels.run_count(), "run"),
-                          file_bytes ? ", " + counted(*file_bytes, "byte") : ""));
+                   {"file_bytes", file_bytes ? Json(*file_bytes) : Json()}};
+    report.update(more);
+    print_out(report);
+    return;
+  }
+  print_out(fmt::format("{}: depth {}, {}, {}, {}{}\n", path, labels.depth(), counted_labels(there.size()),
+                        counted(solid.volume, "voxel"), counted(labels.run_count(), "run"),
+                        file_bytes ? ", " + counted(*file_bytes, "byte") : ""));
 }
 
 }  // namespace blackleaf::cli

@@ -32,6 +32,6 @@ std::string counted_labels(std::size_t labels);
 
 /// write_octree() for a label map. What it tells of voxels, leaves and nodes is of the solid of all labels but 0.
 void write_labels(Session& session, const LabelMap& labels, const std::string& path, const std::string& source,
-                  const Json& options);
+                  const Json& options, const Json& more = Json::object(), const std::string& before = {});
 
 }  // namespace blackleaf::cli

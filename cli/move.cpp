@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
+#include "blackleaf/label_map.h"
 #include "blackleaf/measures.h"
 #include "commands.h"
 #include "files.h"
@@ -13,9 +15,9 @@
 namespace blackleaf::cli {
 namespace {
 
-// WA87's Table 2 in columns: black leaves B, internal nodes I, most internal nodes held at once M, voxels V, I/V.
-// Target nodes are made only once they are known to be gray, so no more than I are ever held: M = I. The source is not
-// computed and has no M.
+// WA87's Table 2 in columns: black leaves B, internal nodes I, most internal nodes held at once M, voxels V, and I/V.
+// The paper makes nodes that later leaves turn out to be superfluous, so its M is above I. Here a node is made when all
+// below it is known and only if it stays: M = I. The source is not computed and has no M.
 std::string table(const Measures& source, const Measures& target) {
   const auto share = [](const Measures& m) {
     return m.volume == 0 ? std::string("-")
@@ -57,26 +59,40 @@ int run_move(Session& session) {
   if (!session.parse()) return kDone;
 
   check_octree_output(session, output);
-  const Octree source = read_solid(session, input, label);
+  const OctreeFile file = read_octree(session, input);
+  if (label && !file.labels) refuse_label(input);
+  const bool all_labels = file.labels && !label;
+  const Octree source = label ? solid_of(*file.labels, *label, input) : file.octree;
   const Motion motion = motion_options.motion(source);
   if (!motion_options.moves())
     session.warn("no motion is given, so the solid stays where it is; give --rotate, --translate or --matrix");
-  const Octree target =
-      session.stage("move", [&](const Work& work) { return move(source, motion, leaving.choice(), work); });
-  warn_if_empty(session, target);
+  std::optional<LabelMap> labels;
+  Octree target;
+  session.stage("move", [&](const Work& work) {
+    if (all_labels)
+      labels = move(*file.labels, motion, leaving.choice(), work);
+    else
+      target = move(source, motion, leaving.choice(), work);
+  });
   Json options = motion_options.as_json(motion);
   options["leaving"] = leaving.name();
   if (label) options["label"] = *label;
   Json more = Json::object();
   std::string rows;
   if (stats && (session.json() || output != "-")) {
-    const auto [before, after] =
-        session.stage("measure", [&](const Work&) { return std::pair(measure(source), measure(target)); });
+    const auto [before, after] = session.stage("measure", [&](const Work&) {
+      return std::pair(measure(source), measure(labels ? octree_from_labels(*labels) : target));
+    });
     more["stats"] = {{"source", row(before)}, {"target", row(after)}};
     more["stats"]["target"]["peak_internal_nodes"] = after.internal_nodes;
     if (!session.json()) rows = table(before, after);
   }
-  write_octree(session, target, output, input, options, more, rows);
+  if (labels) {
+    write_labels(session, *labels, output, input, options, more, rows);
+  } else {
+    warn_if_empty(session, target);
+    write_octree(session, target, output, input, options, more, rows);
+  }
   return kDone;
 }
 

@@ -118,6 +118,13 @@ std::uint64_t MoveProducer::brick(const Task& task, const Cube&) const {
   return first.colour == Colour::gray ? first.word : first.colour == Colour::black ? ~std::uint64_t{0} : 0;
 }
 
+void MoveProducer::reserve(NodeArrays& arrays) const {
+  for (int level = 2; level < depth_; ++level) {
+    const std::size_t count = source_.count(level);
+    arrays.reserve(level, count + count / 8);
+  }
+}
+
 // The colours of the closed solid at some centres of a brick.
 std::uint64_t MoveProducer::exactly(const MovedBack::Point& first, const BrickLookUp& found,
                                     std::uint64_t which) const {

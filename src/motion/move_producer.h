@@ -29,6 +29,8 @@ class MoveProducer {
   std::array<Subtree, 8> bricks(const Task& task, const Cube& cube) const;
   /// Universes smaller than 8^3 are octant 0 of one of that size.
   std::uint64_t brick(const Task& task, const Cube&) const;
+  /// A moved solid has about as many nodes as before.
+  void reserve(NodeArrays& arrays) const;
 
  private:
   void enter(Task& task, const Cube& cube) const;

@@ -28,6 +28,7 @@ class SourceTree {
     for (int k = 2; k <= kMaxDepth; ++k) {
       const auto words = octree.words(k);
       levels_[static_cast<std::size_t>(k)] = words.empty() ? &kFullByte : words.data();
+      counts_[static_cast<std::size_t>(k)] = words.size();
     }
     const Node root = octree.root();
     if (octree.depth() >= 3) {
@@ -47,10 +48,14 @@ class SourceTree {
   /// The first word of a level, or of something that may be read.
   const std::uint64_t* words(int level) const { return levels_[static_cast<std::size_t>(level)]; }
 
+  /// Words of a level.
+  std::size_t count(int level) const { return counts_[static_cast<std::size_t>(level)]; }
+
   static constexpr std::uint64_t kWhite = 0, kBlack = 0xFF;
 
  private:
   int level_;
+  std::array<std::size_t, kMaxDepth + 1> counts_{};
   std::uint64_t root_ = kWhite;
   std::array<const std::uint64_t*, kMaxDepth + 1> levels_{};
 };

@@ -84,7 +84,7 @@ class NodeArrays {
     if (gray == 0 && (black == 0 || black == 0xFF)) return Subtree::uniform(black ? Colour::black : Colour::white);
     auto& below = levels_[static_cast<std::size_t>(level - 1)];
     const std::uint64_t first = gray ? below.size() : 0;
-    below.insert(below.end(), words.begin(), words.end());
+    below.append(words.data(), words.size());
     return {black | gray << 8 | first << 16, Colour::gray};
   }
 

@@ -24,6 +24,7 @@
 //
 //     void reserve(NodeArrays&) const;  // makes room for them
 //
+// which is asked when one thread makes all of them.
 //
 // Its functions are called from many threads. In a universe of depth 1 the root is asked for as a brick whose octant 0
 // is the universe; what it says of the other voxels is ignored (classify must then not answer black unless octant 0 is
@@ -99,7 +100,7 @@ class Production {
       top = produce_node(producer_, task, root, 0, arrays);
       if (depth_ == 1) top = byte(top);
     } else if (thread_count(work_) == 1) {
-      reserve(arrays);
+      if constexpr (requires { producer_.reserve(arrays); }) producer_.reserve(arrays);
       Progress progress(work_, std::size_t{1} << (3 * kStretchLevels));
       Task task = producer_.root();
       top = walk(task, root, 0, arrays, progress);
@@ -108,7 +109,6 @@ class Production {
       std::vector<PackedNode> nodes(stretches_.size());
       for_each_index(nodes.size(), work_, [&](std::size_t i) { nodes[i] = produce(stretches_[i]); });
       stretches_.clear();
-      reserve(arrays);
       std::size_t next_part = 0, next_node = 0;
       top = join(root, 0, nodes, next_part, next_node, arrays);
     }
@@ -124,10 +124,6 @@ class Production {
     Cube cube;
     std::uint8_t table;
   };
-
-  void reserve(NodeArrays& arrays) const {
-    if constexpr (requires { producer_.reserve(arrays); }) producer_.reserve(arrays);
-  }
 
   PackedNode produce(Stretch& stretch) const {
     NodeArrays arrays;

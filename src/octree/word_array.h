@@ -11,11 +11,24 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <utility>
 
 namespace blackleaf::detail {
 
 class WordArray {
  public:
+  WordArray() = default;
+  WordArray(WordArray&& other) noexcept { *this = std::move(other); }
+  WordArray& operator=(WordArray&& other) noexcept {
+    words_ = std::move(other.words_);
+    size_ = std::exchange(other.size_, 0);
+    capacity_ = std::exchange(other.capacity_, 0);
+    return *this;
+  }
+  WordArray(const WordArray&) = delete;
+  WordArray& operator=(const WordArray&) = delete;
+  ~WordArray() = default;
+
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::uint64_t* data() { return words_.get(); }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "blackleaf/label_map.h"
+#include "blackleaf/move.h"
 #include "blackleaf/octree_file.h"
 #include "blackleaf/runs_file.h"
 #include "blackleaf/volume_file.h"
@@ -94,6 +95,24 @@ TEST_F(LabelsCommand, WithoutALabelAllButZeroAreOneSolid) {
   noted({"draw", "a.octree", "--view", "1,2,3", "-o", "a.svg"});
   noted({"export", "a.octree", "-o", "a.stl"});
   EXPECT_EQ(done({"translate", "a.octree", "0,0,0", "-o", "q.octree", "--quiet"}).out, "");
+}
+
+TEST_F(LabelsCommand, MoveMovesAllLabels) {
+  const LabelMap map = *load(folder() / "a.octree").labels;
+  const json report = done({"move", "a.octree", "--rotate", "0,0,1:90", "--about", "centre", "--translate", "0.25,0,0",
+                            "--clip", "--stats", "--json", "-o", "m.octree"})
+                          .json();
+  const Motion turn = Motion::translation({0.25, 0, 0}) * Motion::rotation_degrees({0, 0, 1}, 90).about({2, 2, 2});
+  EXPECT_TRUE(*load(folder() / "m.octree").labels == move(map, turn, Leaving::clip));
+  EXPECT_EQ(report["label_count"], 2);
+  EXPECT_EQ(report["volume"], 17);
+  EXPECT_EQ(report["stats"]["source"]["volume"], 17);
+  EXPECT_EQ(info("m.octree")["labels"][1]["bounding_box"], json::parse("[[1,1,3],[2,2,4]]"));
+  const std::string text = done({"move", "a.octree", "--translate", "0,0,0", "--stats", "-o", "m.octree"}).out;
+  EXPECT_NE(text.find("I/V"), std::string::npos) << text;
+  EXPECT_NE(text.find("m.octree: depth 2, 2 labels, 17 voxels"), std::string::npos) << text;
+  EXPECT_TRUE(*load(folder() / "m.octree").labels == map);
+  refused({"move", "a.octree", "--translate", "0.25,0,0", "-o", "o.octree"}, "0.25 voxels beyond x = 4");
 }
 
 TEST_F(LabelsCommand, VolumesAndRunsCarryLabels) {

@@ -1,6 +1,9 @@
 // The slow readable twin of moving octrees: every target voxel asks for itself.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "blackleaf/motion.h"
 #include "reference/dense_grid.h"
 
@@ -12,31 +15,37 @@ inline DenseGrid translate(const DenseGrid& grid, const std::array<std::int64_t,
   return result;
 }
 
-/// A target voxel is black iff its centre, moved back, lies in some closed black voxel: by the definition, in 128-bit
-/// integers. Voxels outside the universe are dropped.
-inline DenseGrid move(const DenseGrid& grid, const FixedMotion& motion) {
+/// Calls visit(x, y, z) for the voxels whose closed cubes hold the centre of the target voxel `at`, moved back: by the
+/// definition, in 128-bit integers.
+template <class Visit>
+void for_each_touched(const FixedMotion& motion, const std::array<std::int64_t, 3>& at, Visit visit) {
   __extension__ using Wide = __int128;
   constexpr Wide kVoxel = Wide{1} << (FixedMotion::kFractionBits + 1);
+  std::array<Wide, 3> q{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    q[i] = 2 * Wide{motion.inverse_translation[i]};
+    for (std::size_t j = 0; j < 3; ++j) q[i] += Wide{motion.inverse_rotation[i][j]} * (2 * at[j] + 1);
+  }
+  // On every axis, those among the voxels near by whose closed intervals hold it: one, or two.
+  std::array<std::vector<std::int64_t>, 3> touched;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto near = static_cast<std::int64_t>(q[i] / kVoxel);
+    for (std::int64_t v = near - 2; v <= near + 2; ++v)
+      if (v * kVoxel <= q[i] && q[i] <= (v + 1) * kVoxel) touched[i].push_back(v);
+  }
+  for (const std::int64_t z : touched[2])
+    for (const std::int64_t y : touched[1])
+      for (const std::int64_t x : touched[0]) visit(x, y, z);
+}
+
+/// A target voxel is black iff its centre, moved back, lies in some closed black voxel. Voxels outside the universe are
+/// dropped.
+inline DenseGrid move(const DenseGrid& grid, const FixedMotion& motion) {
   DenseGrid result(grid.depth);
   result.for_each([&](int x, int y, int z, bool) {
-    const std::array<Wide, 3> centre = {2 * x + 1, 2 * y + 1, 2 * z + 1};
-    std::array<Wide, 3> q{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      q[i] = 2 * Wide{motion.inverse_translation[i]};
-      for (std::size_t j = 0; j < 3; ++j) q[i] += Wide{motion.inverse_rotation[i][j]} * centre[j];
-    }
-    // Every voxel whose closed cube holds q has coordinates within one of its floor.
-    std::array<std::int64_t, 3> near{};
-    for (std::size_t i = 0; i < 3; ++i) near[i] = static_cast<std::int64_t>(q[i] / kVoxel);
     bool black = false;
-    for (std::int64_t dz = -2; dz <= 1; ++dz)
-      for (std::int64_t dy = -2; dy <= 1; ++dy)
-        for (std::int64_t dx = -2; dx <= 1; ++dx) {
-          const std::array<std::int64_t, 3> v = {near[0] + dx, near[1] + dy, near[2] + dz};
-          bool holds = grid.at(v[0], v[1], v[2]);
-          for (std::size_t i = 0; i < 3; ++i) holds = holds && v[i] * kVoxel <= q[i] && q[i] <= (v[i] + 1) * kVoxel;
-          black = black || holds;
-        }
+    for_each_touched(motion, {x, y, z},
+                     [&](std::int64_t i, std::int64_t j, std::int64_t k) { black = black || grid.at(i, j, k); });
     result.set(x, y, z, black);
   });
   return result;
