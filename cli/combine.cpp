@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "blackleaf/align.h"
 #include "blackleaf/error.h"
 #include "blackleaf/set_operations.h"
 #include "commands.h"
@@ -33,12 +34,21 @@ Operation operation_of(const std::string& name, const std::string& before, const
   return chosen->second;
 }
 
+// For --align.
+void check_lattice(const Octree& first, const std::string& first_name, const Octree& other, const std::string& name) {
+  if (!whole_shift(first.frame(), other.frame()))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("--align: the voxels of '{}' do not lie on those of '{}' in the world", name, first_name),
+                "build it with the other's frame, with build --like");
+}
+
 }  // namespace
 
 int run_combine(Session& session) {
   Label first_label, other_label;
   std::string first_name, operation, output;
   std::vector<std::string> other_names;
+  bool align = false;
   add_octree_input(session.app(), "A", first_name);
   session.app().add_option("OP", operation, "and, or, minus or xor")->required()->type_name("");
   session.app()
@@ -47,6 +57,8 @@ int run_combine(Session& session) {
       ->required()
       ->type_name("");
   add_output(session.app(), output, "octree file to write, or - for standard output; it has the frame of A");
+  session.app().add_flag("--align", align,
+                         "place all by their frames, in the universe of A, doubled until it holds them");
   add_label(session.app(), first_label, "--label-a", "of a file A of many labels: the solid of this one");
   add_label(session.app(), other_label, "--label-b", "the same of every B");
   session.add_json();
@@ -58,13 +70,25 @@ int run_combine(Session& session) {
     throw Error(ErrorCode::bad_argument, "more than one octree is - for standard input", "name files for the others");
   check_octree_output(session, output);
   std::vector<Octree> octrees = {read_solid(session, first_name, first_label)};
-  for (const std::string& name : other_names)
-    octrees.push_back(read_beside(session, octrees.front(), first_name, name, other_label));
-  const Octree result = session.stage("combine", [&](const Work& work) { return chosen(octrees, work); });
+  for (const std::string& name : other_names) {
+    if (align) {
+      octrees.push_back(read_solid(session, name, other_label));
+      check_lattice(octrees.front(), first_name, octrees.back(), name);
+    } else {
+      octrees.push_back(read_beside(session, octrees.front(), first_name, name, other_label,
+                                    "build both in one universe, with build --like, or place them by their frames "
+                                    "with --align"));
+    }
+  }
+  const Octree result = session.stage("combine", [&](const Work& work) {
+    if (align) octrees = aligned(octrees, work);
+    return chosen(octrees, work);
+  });
   warn_if_empty(session, result);
   Json with = Json::array();
   for (const std::string& name : other_names) with.push_back(base_name(name));
   Json options = {{"operation", operation}, {"with", with.size() == 1 ? with.front() : with}};
+  if (align) options["align"] = true;
   if (first_label) options["label_a"] = *first_label;
   if (other_label) options["label_b"] = *other_label;
   write_octree(session, result, output, first_name, options);

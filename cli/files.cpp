@@ -177,14 +177,14 @@ OctreeFile read_octree(Session& session, const std::string& path) {
 }
 
 Octree read_beside(Session& session, const Octree& first, const std::string& first_name, const std::string& name,
-                   const Label& label) {
+                   const Label& label, const std::string& remedy) {
   if (first_name == "-" && name == "-")
     throw Error(ErrorCode::bad_argument, "both octrees are - for standard input", "name a file for one of them");
   const Octree next = read_solid(session, name, label);
   if (first.depth() != next.depth())
     throw Error(ErrorCode::bad_argument,
                 fmt::format("'{}' has depth {} and '{}' has depth {}", first_name, first.depth(), name, next.depth()),
-                "build both in one universe, with build --like");
+                remedy);
   if (!first.frame().same_as(next.frame()))
     session.warn(
         fmt::format("'{}' and '{}' have different frames; they are compared voxel by voxel as if both had "
