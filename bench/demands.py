@@ -48,6 +48,13 @@ def demands():
         yield f"wrong/{side}: voxels", lambda f, k=f"wrong/{side}": f.ours(k), "at most", 0
     yield "mesh: growth from 512 to 1024", lambda f: f.growth("mesh/512/t1", "mesh/1024/t1"), "at most", 4.3
     yield "memory/1024: OpenVDB", lambda f: f.times("memory/1024", "openvdb"), "at least", 4
+    for key in ("combine", "combine-and", "combine-minus"):
+        for who in ("openvdb-csg", "openvdb-csg-copy"):
+            yield f"{key}/1024/t1: {who}", lambda f, k=f"{key}/1024/t1", w=who: f.times(k, w), "at least", 10
+    yield "combine/1024/t1: OpenVDB topology", lambda f: f.times("combine/1024/t1", "openvdb-topology-copy"), "at least", 10
+    for radius in ("1", "4", "16"):
+        key = f"offset-{radius}/1024/t1"
+        yield f"{key}: OpenVDB filter", lambda f, k=key: f.times(k, "openvdb-filter"), "at least", 10
     for side in ("512", "1024"):
         for who in ("openvdb", "octomap", "bits-zstd", "octomap-zstd"):
             yield f"file/{side}: {who}", lambda f, k=f"file/{side}", w=who: f.times(k, w), "at least", 1

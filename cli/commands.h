@@ -12,6 +12,7 @@ int run_info(Session& session);
 int run_translate(Session& session);
 int run_move(Session& session);
 int run_combine(Session& session);
+int run_offset(Session& session);
 int run_collide(Session& session);
 int run_draw(Session& session);
 int run_export(Session& session);

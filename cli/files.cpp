@@ -176,22 +176,27 @@ OctreeFile read_octree(Session& session, const std::string& path) {
   });
 }
 
-std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const Label& a_label, const std::string& b,
-                                    const Label& b_label) {
-  if (a == "-" && b == "-")
+Octree read_beside(Session& session, const Octree& first, const std::string& first_name, const std::string& name,
+                   const Label& label, const std::string& remedy) {
+  if (first_name == "-" && name == "-")
     throw Error(ErrorCode::bad_argument, "both octrees are - for standard input", "name a file for one of them");
-  const Octree first = read_solid(session, a, a_label);
-  const Octree second = read_solid(session, b, b_label);
-  if (first.depth() != second.depth())
+  const Octree next = read_solid(session, name, label);
+  if (first.depth() != next.depth())
     throw Error(ErrorCode::bad_argument,
-                fmt::format("'{}' has depth {} and '{}' has depth {}", a, first.depth(), b, second.depth()),
-                "build both in one universe, with build --like");
-  if (!first.frame().same_as(second.frame()))
+                fmt::format("'{}' has depth {} and '{}' has depth {}", first_name, first.depth(), name, next.depth()),
+                remedy);
+  if (!first.frame().same_as(next.frame()))
     session.warn(
         fmt::format("'{}' and '{}' have different frames; they are compared voxel by voxel as if both had "
                     "that of the first",
-                    a, b));
-  return {first, second};
+                    first_name, name));
+  return next;
+}
+
+std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const Label& a_label, const std::string& b,
+                                    const Label& b_label) {
+  const Octree first = read_solid(session, a, a_label);
+  return {first, read_beside(session, first, a, b, b_label)};
 }
 
 void warn_if_empty(const Session& session, const Octree& octree) {

@@ -37,6 +37,10 @@ void check_octree_output(const Session& session, const std::string& path);
 
 /// Loads an octree, as stage "read".
 OctreeFile read_octree(Session& session, const std::string& path);
+/// Loads a solid that is to be compared voxel by voxel with one that was loaded before, as read_solid() does. Throws
+/// Error(bad_argument) when their depths differ, with `remedy`; warns when their frames do.
+Octree read_beside(Session& session, const Octree& first, const std::string& first_name, const std::string& name,
+                   const Label& label, const std::string& remedy = "build both in one universe, with build --like");
 /// Loads two solids that are to be compared voxel by voxel, as read_solid() does. Throws Error(bad_argument) when their
 /// depths differ; warns when their frames do.
 std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const Label& a_label, const std::string& b,

@@ -20,12 +20,13 @@ struct Command {
 };
 
 // In the order in which one meets them.
-constexpr std::array<Command, 10> kCommands = {{
+constexpr std::array<Command, 11> kCommands = {{
     {"build", "make the octree of a mesh, volume, point cloud, silhouettes or run stream", run_build},
     {"info", "measure an octree: volume, surface, nodes, bounding box, ...", run_info},
     {"translate", "shift an octree by whole voxels, without loss", run_translate},
     {"move", "rotate and translate an octree", run_move},
-    {"combine", "unite, intersect or subtract two octrees", run_combine},
+    {"combine", "unite, intersect or subtract octrees", run_combine},
+    {"offset", "grow or shrink an octree by a ball; open or close it", run_offset},
     {"collide", "ask whether two octrees interfere, by how much, how far apart they are", run_collide},
     {"draw", "draw an octree as lines, hidden ones removed", run_draw},
     {"export", "write an octree as a volume, a mesh or a run stream", run_export},

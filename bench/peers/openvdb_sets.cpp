@@ -2,11 +2,14 @@
 // ours leave their operands whole.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Composite.h>
+#include <openvdb/tools/LevelSetFilter.h>
 #include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/Morphology.h>
 
 #include <map>
 
 #include "blackleaf/measures.h"
+#include "blackleaf/offset.h"
 #include "blackleaf/set_operations.h"
 #include "contenders.h"
 #include "inputs.h"
@@ -66,8 +69,6 @@ void in_place(benchmark::State& state, int threads, const Grid& grid, const Run&
   }
 }
 
-const auto unchecked = [](const auto&) { return true; };
-
 void few(benchmark::internal::Benchmark* added) { added->Iterations(1)->Repetitions(kRepetitions); }
 
 template <class Topology, class Csg, class CsgCopy>
@@ -82,6 +83,14 @@ void add_operation(const std::string& name, Octree (*ours)(const Octree&, const 
         in_place(
             state, threads, mask(depth, false), [&](MaskGrid& grid) { topology(grid, other); },
             [&](const MaskGrid& grid) { return grid.activeVoxelCount() == voxels; });
+      }));
+      few(contender(key, "openvdb-topology-copy", [=](benchmark::State& state) {
+        const MaskGrid &a = mask(depth, false), &b = mask(depth, true);
+        const auto limit = at_most(threads);
+        for (auto _ : state) {
+          const MaskGrid::Ptr copy = a.deepCopy();
+          topology(*copy, b);
+        }
       }));
       few(contender(key, "openvdb-csg", [=](benchmark::State& state) {
         FloatGrid::Ptr other;  // eaten up by the operation
@@ -102,9 +111,37 @@ void add_operation(const std::string& name, Octree (*ours)(const Octree&, const 
     }
 }
 
+// The level set offset is a solid with a smooth surface, nearly ours; dilating active voxels by their faces once is the
+// ball of radius 1.
+void add_offsets() {
+  for (const int depth : {9, 10})
+    for (const int threads : {1, 2})
+      for (const int radius : {1, 4, 16}) {
+        const std::string key =
+            "offset-" + std::to_string(radius) + "/" + side_name(depth) + "/t" + std::to_string(threads);
+        few(contender(key, "openvdb-filter", [=](benchmark::State& state) {
+          in_place(
+              state, threads, level_set(depth, false),
+              [&](FloatGrid& grid) {
+                openvdb::tools::LevelSetFilter<FloatGrid>(grid).offset(-static_cast<float>(radius));
+              },
+              [&](const FloatGrid& grid) { return grid.activeVoxelCount() > 0; });
+        }));
+        if (radius != 1) continue;
+        few(contender(key, "openvdb-dilate", [=](benchmark::State& state) {
+          const std::uint64_t voxels = volume(offset(bunny(depth), 1));
+          in_place(
+              state, threads, mask(depth, false),
+              [&](MaskGrid& grid) { openvdb::tools::dilateActiveValues(grid.tree(), 1); },
+              [&](const MaskGrid& grid) { return grid.activeVoxelCount() == voxels; });
+        }));
+      }
+}
+
 }  // namespace
 
 void add_openvdb_sets() {
+  add_offsets();
   namespace vdb = openvdb::tools;
   add_operation(
       "combine", unite, [](MaskGrid& a, const MaskGrid& b) { a.topologyUnion(b); },

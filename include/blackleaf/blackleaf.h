@@ -1,6 +1,7 @@
 // Everything public, for programs that do not mind the compile time. File formats need the package's component io.
 #pragma once
 
+#include "blackleaf/align.h"
 #include "blackleaf/contact.h"
 #include "blackleaf/curve.h"
 #include "blackleaf/drawing.h"

@@ -28,10 +28,9 @@ namespace blackleaf {
 /// in its universe; a grown one may leave it, by up to floor(radius) voxels: Throws Error(out_of_universe) by
 /// `leaving`; Error(bad_argument) for a radius that is no finite number; Error(cancelled).
 ///
-/// The cost follows the surface of the result, not the universe and not the volume of the ball: nodes wholly within the
-/// radius of one black node, or farther from all, are decided at once; the voxels of the others are decided in tiles,
-/// each from those black voxels that may lie within the radius of it: O(A r^(1/2)) or so for a surface of A voxels and
-/// large r (docs/SETS.md).
+/// The cost follows the surface of the result times the radius, not the universe and not the volume of the ball: nodes
+/// wholly within the radius of one black node, or farther from all, are decided at once; the voxels of the others are
+/// decided in tiles, each from those black voxels that may lie within the radius of it (docs/SETS.md).
 Octree offset(const Octree& octree, double radius, Leaving leaving = Leaving::error, const Work& work = {});
 
 /// Shrunk by `radius`, then grown again. Throws Error(bad_argument) unless the radius is finite and not negative.

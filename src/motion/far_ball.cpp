@@ -151,12 +151,15 @@ class Distances {
       const std::int64_t along_x = row.within != 0 ? 0 : square(std::min(row.before, row.after));
       if (along_x + square(gap(y_of_row)) > left) continue;
       const Lanes distances = along(row);
-      // Only y with (y - y_of_row)^2 <= left - along_x can be reached.
-      const std::int64_t reach = root_of(left - along_x);
-      const std::int64_t low = std::max<std::int64_t>(0, y_of_row - reach);
-      const std::int64_t high = std::min<std::int64_t>(side_ - 1, y_of_row + reach);
-      for (std::int64_t y = low; y <= high; ++y)
+      // From the target row nearest to it outward, as far as it can reach.
+      const auto at = [&](std::int64_t y) {
+        if (square(y - y_of_row) > left - along_x) return false;
         lower(least[static_cast<std::size_t>(y)], distances, square(y - y_of_row));
+        return true;
+      };
+      const std::int64_t nearest = std::clamp<std::int64_t>(y_of_row, 0, side_ - 1);
+      for (std::int64_t y = nearest; y < side_ && at(y); ++y) continue;
+      for (std::int64_t y = nearest - 1; y >= 0 && at(y); --y) continue;
       any = true;
     }
     if (!any) return;

@@ -17,7 +17,7 @@ struct Placed {
 };
 
 /// Voxels of a universe of `depth` within the squared radius of a black voxel, centre to centre. Requires: 0 <= squared
-/// <= 2^44; all corners within 2^21 voxels.
+/// <= 2^44; all corners within 2^22 voxels.
 Octree grow(const Placed& solid, std::int64_t squared, int depth, Frame frame, const Work& work);
 
 }  // namespace blackleaf::detail

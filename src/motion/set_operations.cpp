@@ -47,6 +47,22 @@ constexpr Share share_of_b(bool a) {
   return share(Operation::bits(a ? kAll : 0, 0), Operation::bits(a ? kAll : 0, kAll));
 }
 
+// The most nodes of each level that a result can have: a gray node of it is gray in an operand. Room that is never
+// written to costs nothing.
+class Room {
+ public:
+  void add(const Octree& octree) {
+    for (int level = 2; level < octree.depth(); ++level)
+      nodes_[static_cast<std::size_t>(level)] += octree.words(level).size();
+  }
+  void reserve(NodeArrays& arrays) const {
+    for (int level = 2; level < kMaxDepth; ++level) arrays.reserve(level, nodes_[static_cast<std::size_t>(level)]);
+  }
+
+ private:
+  std::array<std::size_t, kMaxDepth> nodes_{};
+};
+
 std::uint64_t all(const Node& node) { return node.is_black() ? kAll : 0; }
 
 unsigned black_of(std::uint64_t word) { return static_cast<unsigned>(word & 0xFF); }
@@ -67,7 +83,12 @@ class PairProducer {
   PairProducer(const Octree& a, const Octree& b)
       : a_words_(detail::level_words(a)),
         b_words_(detail::level_words(b)),
-        top_{detail::brick_level_root(a), detail::brick_level_root(b)} {}
+        top_{detail::brick_level_root(a), detail::brick_level_root(b)} {
+    room_.add(a);
+    room_.add(b);
+  }
+
+  void reserve(NodeArrays& arrays) const { room_.reserve(arrays); }
 
   Task root() const { return top_; }
   Task child(const Task& task, const Cube&, int octant) const { return {task.a.child(octant), task.b.child(octant)}; }
@@ -145,6 +166,7 @@ class PairProducer {
  private:
   LevelWords a_words_, b_words_;
   Task top_;
+  Room room_;
 };
 
 // Any number of operands of And or Or: those whose colour leaves the others as they are drop out on the way down, one
@@ -162,8 +184,11 @@ class ManyProducer {
     for (const Octree& octree : octrees) {
       top_.push_back({detail::brick_level_root(octree), words_.size()});
       words_.push_back(detail::level_words(octree));
+      room_.add(octree);
     }
   }
+
+  void reserve(NodeArrays& arrays) const { room_.reserve(arrays); }
 
   Task root() const { return top_; }
 
@@ -210,6 +235,7 @@ class ManyProducer {
 
   std::vector<LevelWords> words_;
   Task top_;
+  Room room_;
 };
 
 std::size_t size(const Octree& octree) { return octree.memory_bytes() / sizeof(std::uint64_t); }

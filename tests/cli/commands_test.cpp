@@ -19,7 +19,7 @@ TEST_F(Commands, VersionAndHelp) {
   const std::string help = done({"--help"}).out;
   std::size_t last = 0;
   for (const char* name :
-       {"build", "info", "translate", "move", "combine", "collide", "draw", "export", "curve", "verify"}) {
+       {"build", "info", "translate", "move", "combine", "offset", "collide", "draw", "export", "curve", "verify"}) {
     const std::size_t at = help.find(std::string("\n  ") + name + " ");
     ASSERT_NE(at, std::string::npos) << name;
     EXPECT_GT(at, last) << name;
