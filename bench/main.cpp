@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   add_translate();
   add_move();
   add_combine();
+  add_sweep();
   add_interference();
   add_drawing();
   add_curve();

@@ -99,6 +99,9 @@ class Session {
 void print_out(const std::string& text);
 /// True iff anything went that way.
 bool printed();
+/// From here on, what a run that is interrupted leaves behind, e.g. "3 of 8 frames were written"; empty: nothing.
+void set_left_behind(const std::string& what);
+const std::string& left_behind();
 /// The object on one line.
 void print_out(const Json& object);
 

@@ -59,5 +59,7 @@ void look_up(const CentreSteps& steps, std::span<BrickLookUp> bricks);
 std::vector<std::string> centre_kernels();
 /// Makes look_up use one of them from now on; the empty name is the best. For tests; not while look_up runs.
 void use_centre_kernel(const std::string& name);
+/// True while it is "scalar", for kernels of other files.
+bool scalar_kernel_wanted();
 
 }  // namespace blackleaf::detail
