@@ -52,6 +52,7 @@ void add_translate();
 void add_move();
 void add_combine();
 void add_offset();
+void add_sweep();
 void add_interference();
 void add_drawing();
 void add_curve();

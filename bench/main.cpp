@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   add_move();
   add_combine();
   add_offset();
+  add_sweep();
   add_interference();
   add_drawing();
   add_curve();

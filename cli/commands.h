@@ -14,9 +14,12 @@ int run_move(Session& session);
 int run_combine(Session& session);
 int run_offset(Session& session);
 int run_collide(Session& session);
+int run_sweep(Session& session);
+int run_animate(Session& session);
 int run_draw(Session& session);
 int run_export(Session& session);
 int run_curve(Session& session);
 int run_verify(Session& session);
+int run_reproduce(Session& session);
 
 }  // namespace blackleaf::cli

@@ -19,7 +19,9 @@ int report_current_exception() {
   } catch (const Error& error) {
     // Whatever a signal made fail, the signal is the reason.
     if (const int signal = interrupt_signal(); signal != 0) {
-      print_message(printed() ? "interrupted; what was printed is incomplete" : "interrupted; nothing was written");
+      print_message(printed()               ? "interrupted; what was printed is incomplete"
+                    : left_behind().empty() ? "interrupted; nothing was written"
+                                            : "interrupted; " + left_behind());
       return kSignal + signal;
     }
     print_message(error.what());

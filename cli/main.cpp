@@ -20,7 +20,7 @@ struct Command {
 };
 
 // In the order in which one meets them.
-constexpr std::array<Command, 11> kCommands = {{
+constexpr std::array<Command, 14> kCommands = {{
     {"build", "make the octree of a mesh, volume, point cloud, silhouettes or run stream", run_build},
     {"info", "measure an octree: volume, surface, nodes, bounding box, ...", run_info},
     {"translate", "shift an octree by whole voxels, without loss", run_translate},
@@ -28,10 +28,13 @@ constexpr std::array<Command, 11> kCommands = {{
     {"combine", "unite, intersect or subtract octrees", run_combine},
     {"offset", "grow or shrink an octree by a ball; open or close it", run_offset},
     {"collide", "ask whether two octrees interfere, by how much, how far apart they are", run_collide},
+    {"sweep", "find the space that an octree passes through along a path", run_sweep},
+    {"animate", "make a sequence of octrees or pictures along a path", run_animate},
     {"draw", "draw an octree as lines, hidden ones removed", run_draw},
     {"export", "write an octree as a volume, a mesh or a run stream", run_export},
     {"curve", "convert between node numbers and voxels of the Millar curve", run_curve},
     {"verify", "check every checksum and invariant of an octree file", run_verify},
+    {"reproduce", "compute the papers' tables and figures afresh, beside the printed ones", run_reproduce},
 }};
 
 std::string help() {

@@ -70,6 +70,7 @@ class HelpFormatter : public CLI::Formatter {
 };
 
 bool printed_something = false;
+std::string left_behind_text;
 
 }  // namespace
 
@@ -179,6 +180,8 @@ void print_message(std::string message) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   fmt::print(stderr, "blackleaf: {}\n", message);
 }
+void set_left_behind(const std::string& what) { left_behind_text = what; }
+const std::string& left_behind() { return left_behind_text; }
 
 void print_out(const Json& object) { print_out(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"); }
 

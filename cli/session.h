@@ -104,6 +104,9 @@ void print_out(const std::string& text);
 bool printed();
 /// A message on standard error: one line, even where file names in it hold line breaks.
 void print_message(std::string message);
+/// From here on, what a run that is interrupted leaves behind, e.g. "3 of 8 frames were written"; empty: nothing.
+void set_left_behind(const std::string& what);
+const std::string& left_behind();
 /// The object on one line.
 void print_out(const Json& object);
 

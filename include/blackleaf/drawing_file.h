@@ -1,7 +1,9 @@
 // Line drawings in files.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "blackleaf/drawing.h"
@@ -14,6 +16,9 @@ struct PageOptions {
   double pen_width_mm = 0.25;
   double dots_per_inch = 200;  // PNG only
   std::string title = {};      // what is drawn, for SVG and PDF; UTF-8, may be empty
+  /// The part of the picture plane, (u, v) in voxels, that fills the page inside the margins; none: the drawing's own
+  /// box. Pictures of one region lie on each other, like the frames of a film. Strokes beyond it are drawn as well.
+  std::optional<Eigen::AlignedBox2d> region = {};
 };
 
 /// SVG text: millimetres, one <polyline> a stroke, metadata with the view.

@@ -41,7 +41,9 @@ Page lay_out(const LineDrawing& drawing, const PageOptions& options) {
   check(options);
   Eigen::AlignedBox2d box;
   for (const Stroke& stroke : drawing.strokes) box.extend(stroke.from).extend(stroke.to);
-  if (drawing.strokes.empty()) box = Eigen::AlignedBox2d(Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero());
+  if (options.region) box = *options.region;
+  const bool nothing = box.isEmpty();
+  if (nothing) box = Eigen::AlignedBox2d(Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero());
   if (!box.min().allFinite() || !box.max().allFinite())
     throw Error(ErrorCode::bad_argument, "the drawing has points that are not finite");
   const Eigen::Vector2d extent = box.sizes();
@@ -58,7 +60,7 @@ Page lay_out(const LineDrawing& drawing, const PageOptions& options) {
   if (!std::isfinite(page.scale)) page.scale = 1;  // nothing to draw
   const auto side = [&](double given, double length) {
     if (given > 0) return given;
-    return drawing.strokes.empty() ? kLongerSide : std::max(margins + page.scale * length, options.pen_width_mm);
+    return nothing ? kLongerSide : std::max(margins + page.scale * length, options.pen_width_mm);
   };
   page.width = side(options.width_mm, extent[0]);
   page.height = side(options.height_mm, extent[1]);

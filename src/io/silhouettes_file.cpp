@@ -9,14 +9,13 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "blackleaf/error.h"
-#include "file/input_file.h"
+#include "io/json_file.h"
 #include "octree/whole_direction.h"
 
 namespace blackleaf {
@@ -24,25 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-std::string one_line(std::string_view text) {
-  std::string line;
-  for (const char c : text) line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  return line.size() > 200 ? line.substr(0, 200) + "..." : line;
-}
-
-std::string text_of(const fs::path& path) {
-  detail::InputFile file(path);
-  const std::string name = path.string();
-  if (!file.is_regular()) throw Error(ErrorCode::io, name + ": is not an ordinary file", "copy it to one first");
-  constexpr std::uint64_t kLargest = std::uint64_t{1} << 26;
-  if (file.size() > kLargest)
-    throw Error(ErrorCode::bad_input, name + ": has more than 64 MB, too many for a list of views",
-                "name another file");
-  std::string text(static_cast<std::size_t>(file.size()), '\0');
-  file.read_at(0, {reinterpret_cast<std::uint8_t*>(text.data()), text.size()});
-  return text;
-}
+using detail::one_line;
+using detail::shown;
 
 Json from_toml(const toml::node& node) {
   if (const auto* table = node.as_table()) {
@@ -63,44 +45,15 @@ Json from_toml(const toml::node& node) {
 }
 
 Json parse(const std::string& text, const fs::path& path) {
-  const auto refuse = [&](const char* format, std::size_t line, std::string_view why) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: is not {}: line {}: {}", path.string(), format, line, one_line(why)), "mend it there");
-  };
   std::string suffix = path.extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (suffix == ".toml") {
-    try {
-      return from_toml(toml::parse(text, path.string()));
-    } catch (const toml::parse_error& error) {
-      refuse("TOML", error.source().begin.line, error.description());
-    }
-  }
+  if (suffix != ".toml") return detail::parse_json(text, path.string());
   try {
-    // Far deeper than views go, and shallow enough for what works by recursion.
-    constexpr int kDeepest = 64;
-    std::vector<std::set<std::string>> keys;  // of the objects that are open; the parser would keep the last of a kind
-    return Json::parse(text, [&](int depth, Json::parse_event_t event, const Json& value) {
-      if (depth > kDeepest) throw Error(ErrorCode::bad_input, path.string() + ": is nested too deeply", "mend it");
-      if (event == Json::parse_event_t::object_start) keys.emplace_back();
-      if (event == Json::parse_event_t::object_end) keys.pop_back();
-      if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
-        throw Error(ErrorCode::bad_input,
-                    fmt::format("{}: has {} twice in one object", path.string(), one_line(value.dump())),
-                    "keep the one that is meant");
-      return true;
-    });
-  } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    std::string_view why = error.what();
-    // "[json.exception.parse_error.101] parse error at line 1, column 5: ..."
-    if (const auto at = why.find(": "); at != std::string_view::npos) why.remove_prefix(at + 2);
-    refuse("JSON", 1 + static_cast<std::size_t>(std::count(text.begin(), end, '\n')), why);
-  } catch (const Json::out_of_range&) {
-    throw Error(ErrorCode::bad_input, path.string() + ": has a number beyond floating point", "mend it");
+    return from_toml(toml::parse(text, path.string()));
+  } catch (const toml::parse_error& error) {
+    detail::refuse_text(path.string(), "TOML", error.source().begin.line, error.description());
   }
-  return {};
 }
 
 // Reads the entries of one file; every error names the file and the entry.
@@ -109,7 +62,7 @@ class ViewsReader {
   explicit ViewsReader(const fs::path& path) : path_(path) {}
 
   SilhouetteSet read(std::optional<int> depth) {
-    const Json file = parse(text_of(path_), path_);
+    const Json file = parse(detail::text_of(path_, "a list of views"), path_);
     if (!file.is_object()) fail("the file", "is no table of entries", R"(begin with {"views": [...]})");
     refuse_unknown(file, "", {"depth", "views"});
     SilhouetteSet set;
@@ -142,10 +95,6 @@ class ViewsReader {
     if (!value.is_number_integer() || value < 1 || value > kMaxDepth)
       fail("depth", "is " + shown(value), "use a whole number from 1 to 20");
     return value.get<int>();
-  }
-
-  static std::string shown(const Json& value) {
-    return one_line(value.dump(-1, ' ', false, Json::error_handler_t::replace));
   }
 
   Silhouette view(const Json& value, std::size_t index, std::size_t& unnamed) const {

@@ -194,6 +194,8 @@ std::vector<std::string> centre_kernels() {
   return names;
 }
 
+bool scalar_kernel_wanted() { return scalar_wanted; }
+
 void use_centre_kernel(const std::string& name) {
   scalar_wanted = name == "scalar";
   std::int64_t wanted = 0;  // all that there are

@@ -62,5 +62,7 @@ void look_up(const CentreSteps& steps, const Neighbourhood& source, std::span<Br
 std::vector<std::string> centre_kernels();
 /// Makes look_up use one of them from now on; the empty name is the best. For tests; not while look_up runs.
 void use_centre_kernel(const std::string& name);
+/// True while it is "scalar", for kernels of other files.
+bool scalar_kernel_wanted();
 
 }  // namespace blackleaf::detail
