@@ -132,6 +132,18 @@ class Neighbourhood {
   std::uint8_t black(std::size_t cell) const { return black_[cell]; }
   std::uint8_t gray(std::size_t cell) const { return gray_[cell]; }
   const std::uint64_t* words(std::size_t cell) const { return words_[cell]; }
+  /// The eight bricks of a cell in octant order. Requires: a neighbourhood of level 3.
+  void bricks(std::size_t cell, std::uint64_t* result) const {
+    assert(level_ == 3);
+    const std::uint64_t* gray = words_[cell];
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      const unsigned bit = 1u << octant;
+      if ((gray_[cell] & bit) != 0)
+        result[octant] = *gray++;
+      else
+        result[octant] = (black_[cell] & bit) != 0 ? ~std::uint64_t{0} : 0;
+    }
+  }
 
  private:
   using Bytes = std::array<std::uint8_t, 32>;  // by cell, x + 3 (y + 3 z) from the lowest
