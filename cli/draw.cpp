@@ -66,9 +66,9 @@ int run_draw(Session& session) {
   const double length = drawing.length();
   session.write_stage([&] {
     if (output != "-") return write_drawing(drawing, output, page);
-    const std::string picture = (kind == "svg" ? to_svg(drawing, page) : to_json(drawing)) + "\n";
+    const std::string text = (kind == "svg" ? to_svg(drawing, page) : to_json(drawing)) + "\n";
     check_interrupt();
-    print_out(picture);
+    print_out(text);
   });
 
   if (output == "-") return kDone;

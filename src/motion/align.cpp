@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <string>
-
-#include <Eigen/LU>
 
 #include "blackleaf/error.h"
 #include "blackleaf/measures.h"
@@ -19,16 +17,22 @@ namespace {
 
 using Shift = std::array<std::int64_t, 3>;
 
-constexpr double kMostShift = std::int64_t{1} << (kMaxDepth + 1);
+constexpr std::int64_t kMostShift = std::int64_t{1} << (kMaxDepth + 1);
 
 std::vector<Shift> shifts_of(std::span<const Octree> octrees) {
   std::vector<Shift> shifts;
   for (std::size_t i = 0; i < octrees.size(); ++i) {
-    const auto shift = whole_shift(octrees.front().frame(), octrees[i].frame());
+    const auto shift = whole_shift(octrees[i].frame(), octrees.front().frame());
     if (!shift)
       throw Error(ErrorCode::bad_argument,
                   "the voxels of octree " + std::to_string(i + 1) + " are not on the lattice of those of the first",
                   "make both from one frame");
+    for (const std::int64_t by : *shift)
+      if (std::abs(by) > kMostShift)
+        throw Error(
+            ErrorCode::out_of_universe,
+            "octree " + std::to_string(i + 1) + " lies farther from the first than a universe of depth 20 reaches",
+            "bring them closer");
     shifts.push_back(*shift);
   }
   return shifts;
@@ -56,14 +60,6 @@ detail::TargetUniverse universe_of_all(std::span<const Octree> octrees, const st
 }
 
 }  // namespace
-
-std::optional<Shift> whole_shift(const Frame& frame, const Frame& other) {
-  const Eigen::Vector3d corner = frame.axes.inverse() * (other.origin - frame.origin);
-  if (!(corner.cwiseAbs().maxCoeff() <= kMostShift)) return std::nullopt;  // NaN too
-  const Eigen::Vector3d whole = corner.array().round();
-  if (!frame.shifted(whole).same_as(other)) return std::nullopt;
-  return Shift{std::llround(whole.x()), std::llround(whole.y()), std::llround(whole.z())};
-}
 
 std::vector<Octree> aligned(std::span<const Octree> octrees, const Work& work) {
   assert(!octrees.empty());
