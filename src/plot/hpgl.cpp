@@ -47,8 +47,8 @@ class Plotter {
   void select(std::size_t pen) {
     if (pen == pen_) return;
     lift();
+    out_.put(pen_ == 0 ? "SP" : "PU;SP");
     pen_ = pen;
-    out_.put("SP");
     out_.put_integer(static_cast<std::int64_t>(pen));
     out_.put(";\n");
   }

@@ -50,7 +50,7 @@ TEST(TextBuffer, DecimalsAgainstPrintf) {
     EXPECT_EQ(out.take(), text);
   }
   detail::TextBuffer out;
-  for (const double value : {-0.00004, 0.00005, -0.00005, 12.34565, -0.0, 999.99996}) {
+  for (const double value : {-0.00004, 0.00005, -0.00005, 12.34567, -0.0, 999.99996}) {
     out.put_decimal(value);
     out.put(' ');
   }
