@@ -6,9 +6,11 @@ include(CMakePackageConfigHelpers)
 add_library(blackleaf INTERFACE)
 add_library(blackleaf::blackleaf ALIAS blackleaf)
 target_link_libraries(blackleaf INTERFACE
-  blackleaf::octree blackleaf::build blackleaf::motion blackleaf::contact blackleaf::draw blackleaf::file)
+  blackleaf::octree blackleaf::build blackleaf::motion blackleaf::contact blackleaf::draw blackleaf::plot
+  blackleaf::file)
 
-install(TARGETS blackleaf blackleaf_octree blackleaf_build blackleaf_motion blackleaf_contact blackleaf_draw blackleaf_file
+install(TARGETS blackleaf blackleaf_octree blackleaf_build blackleaf_motion blackleaf_contact blackleaf_draw blackleaf_plot
+  blackleaf_file
   EXPORT blackleafTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS blackleaf_io EXPORT blackleafIoTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/blackleaf DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

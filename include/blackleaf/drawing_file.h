@@ -1,33 +1,23 @@
-// Line drawings in files.
+// Pictures in files.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
+#include <vector>
 
-#include "blackleaf/drawing.h"
+#include "blackleaf/picture.h"
 
 namespace blackleaf {
 
-struct PageOptions {
-  double width_mm = 0, height_mm = 0;  // page; 0: the drawing's own shape, 180 mm on its longer side
-  double margin_mm = 10;
-  double pen_width_mm = 0.25;
-  double dots_per_inch = 200;  // PNG only
-  std::string title = {};      // what is drawn, for SVG and PDF; UTF-8, may be empty
-  /// The part of the picture plane, (u, v) in voxels, that fills the page inside the margins; none: the drawing's own
-  /// box. Pictures of one region lie on each other, like the frames of a film. Strokes beyond it are drawn as well.
-  std::optional<Eigen::AlignedBox2d> region = {};
-};
+/// Pixels, white where nothing is drawn. Throws Error(bad_argument) when a side would have more than 32767 pixels.
+std::vector<std::uint8_t> to_png(const Picture& picture, double dots_per_inch = 200);
+/// One page, vectors. The same picture gives the same bytes: the date within is fixed.
+std::vector<std::uint8_t> to_pdf(const Picture& picture);
 
-/// SVG text: millimetres, one <polyline> a stroke, metadata with the view.
-std::string to_svg(const LineDrawing& drawing, const PageOptions& page = {});
-/// JSON text: {"view": [x,y,z], "right": [..], "up": [..], "strokes": [[[u,v],[u,v]],...]}, voxel units.
-std::string to_json(const LineDrawing& drawing);
-
-/// Writes .svg, .json, .png or .pdf by suffix. Atomic. Throws Error(io), and Error(bad_argument) for other suffixes or
-/// a page too small for its margins.
+/// Writes .svg, .json, .png or .pdf by suffix. Atomic. Throws Error(io), and Error(bad_argument) for other suffixes.
+void write_picture(const Picture& picture, const std::filesystem::path& path, double dots_per_inch = 200);
+/// The same for a drawing on a page of its own; .json is in voxels then. Throws Error(bad_argument) for a page too small
+/// for its margins.
 void write_drawing(const LineDrawing& drawing, const std::filesystem::path& path, const PageOptions& page = {});
 
 }  // namespace blackleaf

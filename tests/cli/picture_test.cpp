@@ -31,18 +31,58 @@ TEST_F(Pictures, StandardOutputTakesSvgAndJson) {
   const Result text = done({"draw", "b.octree", "--view=-1,0,0", "-o", "-", "--format", "json"});
   EXPECT_EQ(text.json()["strokes"].size(), 4u);
   refused({"draw", "b.octree", "--view", "1,0,0", "-o", "-"}, "--format svg");
-  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "-", "--format", "png"}, "svg or json");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "-", "--format", "png"}, "svg, hpgl, dxf or json");
   refused({"draw", "b.octree", "--view", "1,0,0", "-o", "-", "--format", "json", "--json"}, "--json");
 }
 
 TEST_F(Pictures, EveryFormatBeginsAsItShould) {
-  for (const auto& [name, magic] : std::vector<std::pair<std::string, std::string>>{
-           {"p.svg", "<"}, {"p.png", "\x89PNG"}, {"p.pdf", "%PDF"}, {"p.json", "{"}}) {
+  for (const auto& [name, magic] : std::vector<std::pair<std::string, std::string>>{{"p.svg", "<"},
+                                                                                    {"p.png", "\x89PNG"},
+                                                                                    {"p.pdf", "%PDF"},
+                                                                                    {"p.json", "{"},
+                                                                                    {"p.hpgl", "IN;"},
+                                                                                    {"p.dxf", "0\nSECTION"}}) {
     const Result result = done({"draw", "b.octree", "--view", "1,2,3", "-o", name});
     EXPECT_EQ(read(name).substr(0, magic.size()), magic);
     EXPECT_NE(result.out.find(name + ": 9 strokes"), std::string::npos) << result.out;
   }
-  EXPECT_EQ(files(), (std::vector<std::string>{"b.octree", "p.json", "p.pdf", "p.png", "p.svg"}));
+  EXPECT_EQ(files(), (std::vector<std::string>{"b.octree", "p.dxf", "p.hpgl", "p.json", "p.pdf", "p.png", "p.svg"}));
+}
+
+TEST_F(Pictures, PenOrderAndStats) {
+  const auto stats = [&](const std::string& order) {
+    return done({"draw", "b.octree", "--view", "3,-4,2", "-o", "p.svg", "--order", order, "--stats", "--json"})
+        .json()["pen"];
+  };
+  const json none = stats("none");
+  EXPECT_EQ(none["before"], none["after"]);
+  for (const char* order : {"strokes", "chains"}) {
+    const json pen = stats(order);
+    EXPECT_EQ(pen["before"], none["before"]);
+    EXPECT_EQ(pen["after"]["strokes"], 9);
+    EXPECT_NEAR(pen["after"]["pen_down"].get<double>(), none["after"]["pen_down"].get<double>(), 1e-9);
+    EXPECT_LE(pen["after"]["pen_up"].get<double>(), none["after"]["pen_up"].get<double>());
+    // A cube shows 7 corners, three lines meet in 4 of them: two chains.
+    EXPECT_EQ(pen["after"]["pen_lifts"], 2);
+  }
+  const Result text = done({"draw", "b.octree", "--view", "3,-4,2", "-o", "p.hpgl", "--stats", "--quiet"});
+  EXPECT_NE(text.out.find("in order: 9 strokes, pen down"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("2 pen lifts"), std::string::npos);
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "q.svg", "--order", "best"}, "--order");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "q.json", "--stats"}, "--stats");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "q.hpgl", "--size", "2000x2000"}, "HP-GL reaches, 819.175 mm");
+}
+
+TEST_F(Pictures, NothingToSee) {
+  make_box("empty.octree", 3, {0, 0, 0}, {0, 0, 0});
+  for (const char* name : {"e.svg", "e.pdf", "e.png", "e.hpgl", "e.dxf", "e.json"}) {
+    const Result result = run({"draw", "empty.octree", "--view", "1,2,3", "-o", name});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(lines(result.err), 1u) << result.err;
+    EXPECT_NE(result.err.find("the picture is empty"), std::string::npos) << result.err;
+    EXPECT_FALSE(read(name).empty());
+  }
+  EXPECT_EQ(json::parse(read("e.json"))["strokes"], json::array());
 }
 
 TEST_F(Pictures, PageSizes) {
@@ -66,7 +106,7 @@ TEST_F(Pictures, DrawRefusals) {
   for (const char* view : {"0,0,0", "nan,0,1", "1,2", "1,2,3,4", "inf,0,0", "1;2;3", "a,b,c", "1, 2,3", ""})
     refused({"draw", "b.octree", "--view", view, "-o", "p.svg"}, "--view");
   refused({"draw", "b.octree", "-o", "p.svg"}, "--view");
-  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.gif"}, ".svg, .json, .png or .pdf");
+  refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.gif"}, ".svg, .pdf, .png, .hpgl, .dxf or .json");
   refused({"draw", "b.octree", "--view", "1,0,0", "-o", "p.svg", "--format", "pdf"}, "--format pdf");
 }
 

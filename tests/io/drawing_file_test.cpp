@@ -193,7 +193,7 @@ TEST(DrawingFile, OptionsThatAreNotPossible) {
                [&] { write_drawing(drawing, folder / "a.png", {.width_mm = 10000, .height_mm = 10000}); });
   expect_error(ErrorCode::bad_argument, {"a.bmp", "use .svg"}, [&] { write_drawing(drawing, folder / "a.bmp"); });
   expect_error(ErrorCode::bad_argument, {"use .svg"}, [&] { write_drawing(drawing, folder / "svg"); });
-  for (const char* name : {"a.svg", "a.json", "a.png", "a.pdf"})
+  for (const char* name : {"a.svg", "a.json", "a.png", "a.pdf", "a.hpgl", "a.dxf"})
     expect_error(ErrorCode::io, {"cannot be written"}, [&] { write_drawing(drawing, folder / "no" / name); });
   EXPECT_TRUE(folder.names().empty());
 }
