@@ -118,7 +118,7 @@ TEST_F(BadInput, UsageIsExplained) {
   refused({"info", "b.octree", "--json=maybe"}, "--json");
   refused({"draw", "b.octree", "--view", "1,0,0", "--view", "0,1,0", "-o", "o.svg"}, "--view");
   // Commands that do not report have no --json to ignore, and later commands are not there yet.
-  refused({"reproduce"}, "unknown command");
+  refused({"teleport"}, "unknown command");
 }
 
 TEST_F(BadInput, MissingOutput) {

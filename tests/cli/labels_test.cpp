@@ -76,7 +76,8 @@ TEST_F(LabelsCommand, EveryLabelOpensAsItsOwnOctree) {
   EXPECT_EQ(info("m.octree")["bounding_box"], json::parse("[[0,0,1],[4,4,2]]"));
   done({"draw", "a.octree", "--view", "1,2,3", "--label", "3", "-o", "a.svg"});
   done({"draw", "three.octree", "--view", "1,2,3", "-o", "three.svg"});
-  EXPECT_EQ(read("a.svg"), read("three.svg"));
+  const auto lines = [&](const char* name) { return read(name).substr(read(name).find("<g ")); };  // less their sources
+  EXPECT_EQ(lines("a.svg"), lines("three.svg"));
   done({"export", "a.octree", "--label", "3", "-o", "a.runs"});
   EXPECT_TRUE(read_runs(folder() / "a.runs") == three);
   done({"export", "a.octree", "--label", "200", "-o", "a.ply"});
