@@ -53,7 +53,7 @@ bool is_itself(std::string_view text, double value) {
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
   std::string digits(mantissa.substr(0, point));
   digits += mantissa.substr(std::min(point + 1, mantissa.size()));
-  // A finite value has at most 309 digits ahead of its point, so the exponent fits whatever the mantissa's length.
+  // What is added are at most the twenty digits of such a number.
   auto ahead = static_cast<std::int64_t>(point);
   if (e < text.size()) ahead += number_in<std::int64_t>(text.substr(e + 1)).value_or(0);
   while (static_cast<std::int64_t>(digits.size()) < ahead) digits += '0';

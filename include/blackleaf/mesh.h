@@ -63,11 +63,11 @@ enum class MeshRule {
 /// arithmetic. A centre that lies exactly on the surface counts as if it were moved by an infinitesimal (e, e^2, e^3)
 /// in universe coordinates, so solids that share a face share no voxel and axis-aligned boxes come out exact. The frame
 /// may be oblique and left-handed; either orientation of the whole surface is accepted. Throws Error(bad_input) for a
-/// mesh whose triangles all have no area on that grid (not under MeshRule::touched), for one that is not closed (with
-/// the number of open edges), is oriented inconsistently, or passes through itself where a voxel centre shows it
-/// (winding numbers other than 0 and 1), Error(out_of_universe) when it does not fit the universe, Error(bad_argument)
-/// for a depth outside 1..20 or axes that do not span space. O(surface voxels log(surface voxels) + triangles) time,
-/// O(surface voxels + triangles) memory.
+/// mesh whose triangles all have no area on that grid, for one that is not closed (with the number of open edges), is
+/// oriented inconsistently, or passes through itself where a voxel centre shows it (winding numbers other than 0 and
+/// 1), Error(out_of_universe) when it does not fit the universe, Error(bad_argument) for a depth outside 1..20 or axes
+/// that do not span space. O(surface voxels log(surface voxels) + triangles) time, O(surface voxels + triangles)
+/// memory.
 Octree octree_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placement, MeshRule rule = MeshRule::centre,
                         const Work& work = {});
 
@@ -113,8 +113,9 @@ struct MeshSolid {
 /// on neither compiler nor threads, nor on the choice of caps.
 ///
 /// MeshRule::touched adds every voxel whose closed cube meets a triangle. Throws as octree_from_mesh() does for meshes
-/// without triangles, with vertices that are not finite, or outside the universe. O(surface voxels log(surface voxels)
-/// + triangles) time and O(surface voxels + triangles) memory; with holes, times O(log(cap triangles)) near the caps.
+/// without triangles or area, with vertices that are not finite, or outside the universe. O(surface voxels log(surface
+/// voxels) + triangles) time and O(surface voxels + triangles) memory; with holes, times O(log(cap triangles)) near the
+/// caps.
 MeshSolid solid_from_mesh(const TriangleMesh& mesh, const MeshPlacement& placement, const MeshOptions& options = {},
                           const Work& work = {});
 

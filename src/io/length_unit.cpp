@@ -39,22 +39,19 @@ void apply_units(const std::filesystem::path& path, ImageFormat format, ImageGeo
                  const std::function<void(const std::string&)>& warn) {
   if (format == ImageFormat::nifti) return;
   const bool nrrd = format == ImageFormat::nrrd;
-  std::vector<std::string> units;  // along x, y and z of the world
-  bool of_space = false;
+  std::vector<std::string> units, of_axes;  // along x, y and z of the world; along the axes of NRRD's array
+  bool in_space = false;                    // these axes have directions in a space
   for_each_field(head_of(path, kLongestTextHeader),
                  nrrd ? ":" : "=:", [&](const std::string& name, const std::string& value, std::uint64_t) {
                    if (nrrd && value.starts_with('=')) return true;  // key:=value pairs mean nothing to us
                    const std::string key = nrrd ? lower(name) : name;
-                   if (nrrd && key == "space units") {
-                     units = units_in(value);
-                     of_space = true;
-                   } else if (nrrd && key == "units" && !of_space) {
-                     units = units_in(value);  // of the array's axes, which are the world's where there is no space
-                   } else if (!nrrd && key == "DistanceUnits") {
-                     units.assign(3, value);
-                   }
+                   if (nrrd && key == "units") of_axes = units_in(value);
+                   if (nrrd && key == "space units") units = units_in(value);
+                   if (!nrrd && key == "DistanceUnits") units.assign(3, value);
+                   in_space = in_space || key.starts_with("space ") || key == "space";
                    return nrrd ? !key.empty() : key != "ElementDataFile";
                  });
+  if (!in_space && !of_axes.empty()) units = of_axes;  // where there is no space, its axes are the world's
   bool warned = false;
   for (std::size_t i = 0; i < std::min<std::size_t>(3, units.size()); ++i) {
     if (units[i].empty() || units[i].find_first_not_of('?') == std::string::npos || units[i] == "none") continue;
