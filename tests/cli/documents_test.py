@@ -4,7 +4,7 @@
 usage: documents_test.py PROGRAM SOURCE_FOLDER [--update]
 
 docs/COMMAND_LINE.md: lines "    $ COMMAND" are run in their order in one folder, and the indented lines that follow
-must be what they print. README.md: commands of its ```sh blocks that begin with "blackleaf" must succeed. With --update,
+must be what they print; "$ cat FILE" makes a file that is not there. README.md: commands of its ```sh blocks that begin with "blackleaf" must succeed. With --update,
 what is printed takes the place of what stood in COMMAND_LINE.md.
 """
 import difflib
@@ -29,8 +29,11 @@ def run(command, folder, program):
     return done.stdout.rstrip("\n").split("\n") if done.stdout.strip() else [], done.returncode
 
 
-def missing_file(command):
-    """A file outside the folder that a command reads and that is not installed here, or None."""
+def missing(command):
+    """A program that is not installed here, or a file outside the folder that is not, or None."""
+    name = command.split()[0]
+    if name != "blackleaf" and not shutil.which(name):
+        return name
     outside = re.findall(r"(?<=\s)/\S+", command)
     return next((name for name in outside if not os.path.exists(name)), None)
 
@@ -60,7 +63,11 @@ def check_command_line(document, source, folder, program, update):
         while at < len(lines) and lines[at].startswith("    ") and not SHOWN.match(lines[at]):
             told.append(lines[at][4:])
             at += 1
-        unknown = missing_file(command) or next((name for name in absent if name in command.split()), None)
+        shown = re.fullmatch(r"cat (\S+)", command)
+        if shown and not os.path.exists(os.path.join(folder, shown[1])):  # a file of the reader's own
+            with open(os.path.join(folder, shown[1]), "w", encoding="utf-8") as file:
+                file.write("\n".join(told) + "\n")
+        unknown = missing(command) or next((name for name in absent if name in command.split()), None)
         if unknown:
             print(f"passed over, there is no {unknown}: {command}")
             absent.update(re.findall(r"-o (\S+)", command))
