@@ -4,7 +4,7 @@ Only what stands between a pair of lines <!-- NAME: from bench/results.json --> 
 """
 import re
 
-SIDES = ("128", "256", "512", "1024")
+SIDES = ("128", "256", "512", "1024", "2048", "4096")
 
 
 def shown(value, unit):

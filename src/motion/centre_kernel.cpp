@@ -78,7 +78,7 @@ void look_up_lanes(const CentreSteps& steps, const Neighbourhood& source, std::s
   Blocks blocks;
   source.for_each_row([&](std::size_t y, std::size_t z) HWY_ATTR {
     for (std::size_t cell = 3 * y + 9 * z, end = cell + 3; cell < end; ++cell) {
-#if HWY_TARGET <= HWY_AVX3
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3  // the gray ones stand side by side in memory
       const __m512i gray = _mm512_maskz_expandloadu_epi64(source.gray(cell), source.words(cell));
       _mm512_storeu_si512(blocks[cell].data(), _mm512_mask_mov_epi64(gray, source.black(cell), _mm512_set1_epi64(-1)));
 #else
