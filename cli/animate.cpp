@@ -10,6 +10,7 @@
 #include "blackleaf/sweep.h"
 #include "commands.h"
 #include "files.h"
+#include "motion_options.h"
 #include "path_input.h"
 #include "picture_options.h"
 
@@ -107,7 +108,7 @@ int run_animate(Session& session) {
   std::optional<std::string> view_text;
   std::optional<int> frames;
   std::optional<double> fps;
-  bool clip = false;
+  LeavingOptions leaving;
   PictureOptions picture;
   add_octree_input(session.app(), "FILE", input);
   add_path_input(session.app(), path_name);
@@ -121,7 +122,7 @@ int run_animate(Session& session) {
   add_number(session.app(), "--fps", fps, true, "so many frames a second of the path's time")->excludes(count);
   add_text(session.app(), "--view", view_text, "x,y,z", "of pictures: direction toward the viewer");
   picture.add_to(session.app());
-  session.app().add_flag("--clip", clip, "drop what leaves the universe");
+  leaving.add_to(session.app());
   add_label(session.app(), label);
   session.add_json();
   session.set_example("blackleaf animate bunny.octree --path hop.json -o hop%04d.png --frames 48 --view 3,-4,2");
@@ -141,14 +142,15 @@ int run_animate(Session& session) {
 
   const Path path = read_path_input(session, path_name, input);
   const std::vector<double> times = frame_times(path, frames, fps);
-  const Octree source = read_solid(session, input, label);
-  std::vector<Motion> motions;
-  for (const double time : times) motions.push_back(path.motion_at(time));
+  const Octree solid = read_solid(session, input, label);
+  std::vector<Motion> way;
+  for (const double time : times) way.push_back(path.motion_at(time));
   // All frames are asked before the first is written.
-  if (!clip) require_inside(source, motions);
+  const RoomForMotions room =
+      session.stage("animate", [&](const Work& work) { return room_for(solid, way, leaving.choice(), work); });
   PageOptions page;
   if (view) {
-    const Eigen::AlignedBox2d region = common_region(source, *view, motions);
+    const Eigen::AlignedBox2d region = common_region(room.octree, *view, room.motions);
     page = picture.page(region);
     if (!region.isEmpty()) page.region = region;
   }
@@ -161,7 +163,7 @@ int run_animate(Session& session) {
                     [&, from, to](double done) { return work.progress((i + from + (to - from) * done) / total); }};
       };
       const auto index = static_cast<std::size_t>(i);
-      const Octree moved = move(source, motions[index], clip ? Leaving::clip : Leaving::error, part(0, 0.5));
+      const Octree moved = move(room.octree, room.motions[index], leaving.choice(), part(0, 0.5));
       const std::string name = names.of(i + 1);
       if (view) {
         write_drawing(draw(moved, *view, part(0.5, 1)), name, page);

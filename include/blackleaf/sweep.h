@@ -38,7 +38,15 @@ Octree sweep(const Octree& octree, const Path& path, double step = 1, Leaving le
 /// Error(bad_argument) as path.times() does.
 std::vector<Motion> motions_along(const Octree& octree, const Path& path, double step = 1);
 
-/// Throws Error(out_of_universe) that says how far, unless the solid stays in its universe by all motions.
-void require_inside(const Octree& octree, std::span<const Motion> motions);
+/// A solid and motions of it in one universe.
+struct RoomForMotions {
+  Octree octree;
+  std::vector<Motion> motions;
+};
+/// The same if the solid stays in its universe by all motions, or is to be clipped. Otherwise throws
+/// Error(out_of_universe) that says how far it leaves at most, or, when growing, gives the solid at its place in a
+/// universe that holds it by all motions, and the motions about that place: moves into one universe for all of them.
+RoomForMotions room_for(const Octree& octree, std::span<const Motion> motions, Leaving leaving = Leaving::error,
+                        const Work& work = {});
 
 }  // namespace blackleaf

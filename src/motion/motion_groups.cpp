@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace blackleaf::detail {
 namespace {
@@ -22,7 +23,7 @@ constexpr std::int64_t kMostSlack = std::int64_t{1} << (kSourceBits + 22);
 
 MovedBackCentres::MovedBackCentres(const FixedMotion& motion) : motion_(motion) {
   for (std::size_t i = 0; i < 3; ++i)
-    for (const std::int64_t entry : motion.inverse_rotation[i]) reach_[i] += entry < 0 ? -entry : entry;
+    for (const std::int64_t entry : motion.inverse_rotation[i]) reach_[i] += std::abs(entry);
 }
 
 SourcePoint MovedBackCentres::at(std::int64_t x2, std::int64_t y2, std::int64_t z2) const {
@@ -32,6 +33,20 @@ SourcePoint MovedBackCentres::at(std::int64_t x2, std::int64_t y2, std::int64_t 
     q[i] = a[0] * x2 + a[1] * y2 + a[2] * z2 + 2 * motion_.inverse_translation[i];
   }
   return q;
+}
+
+SourceBox MovedBackCentres::box(const Voxels& voxels) const {
+  const auto &low = voxels.low, &high = voxels.high;
+  const SourcePoint middle =
+      at(std::int64_t{low[0]} + high[0] + 1, std::int64_t{low[1]} + high[1] + 1, std::int64_t{low[2]} + high[2] + 1);
+  SourceBox box;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::int64_t half = 0;
+    for (std::size_t j = 0; j < 3; ++j) half += std::abs(motion_.inverse_rotation[i][j]) * (high[j] - low[j]);
+    box.low[i] = middle[i] - half;
+    box.high[i] = middle[i] + half;
+  }
+  return box;
 }
 
 SourceBox MovedBackCentres::box(const Cube& cube) const {
@@ -133,17 +148,6 @@ bool MotionGroups::reaches(const Group& group, const Cube& cube) const {
   for (std::size_t i = 0; i < 3; ++i)
     if (low[i] > group.high[i] || low[i] + cube.side() < group.low[i]) return false;
   return true;
-}
-
-SourceBox MotionGroups::box(const Group& group, const Cube& cube) const {
-  SourceBox box = motions_[group.first].box(cube);
-  if (group.single()) return box;
-  const SourceBox other = motions_[group.last].box(cube);
-  for (std::size_t i = 0; i < 3; ++i) {
-    box.low[i] = std::min(box.low[i], other.low[i]) - group.slack[i];
-    box.high[i] = std::max(box.high[i], other.high[i]) + group.slack[i];
-  }
-  return box;
 }
 
 }  // namespace blackleaf::detail

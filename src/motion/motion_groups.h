@@ -8,6 +8,7 @@
 // the motion; any other is white by it, wherever it lies.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,11 @@ struct SourceBox {
   SourcePoint low{}, high{};
 };
 
+/// Voxels of the target, [low, high] on every axis.
+struct Voxels {
+  std::array<std::int32_t, 3> low{}, high{};
+};
+
 /// One motion, seen from the target.
 class MovedBackCentres {
  public:
@@ -40,7 +46,9 @@ class MovedBackCentres {
   SourcePoint centre(std::int64_t x, std::int64_t y, std::int64_t z) const {
     return at(2 * x + 1, 2 * y + 1, 2 * z + 1);
   }
-  /// A box around the centres of all voxels of a cube, moved back.
+  /// The box around the centres of these voxels, moved back.
+  SourceBox box(const Voxels& voxels) const;
+  /// The same for all voxels of a cube.
   SourceBox box(const Cube& cube) const;
   /// From a voxel's centre to that of the next along an axis of the target.
   SourcePoint step(std::size_t axis) const;
@@ -50,7 +58,7 @@ class MovedBackCentres {
   SourcePoint at(std::int64_t x2, std::int64_t y2, std::int64_t z2) const;
 
   FixedMotion motion_;
-  SourcePoint reach_{};  // sum of |A_ij| over j: half the box per half side
+  SourcePoint reach_{};  // sum of |A_ij| over j: half a cube's box per half side
 };
 
 class MotionGroups {
@@ -76,9 +84,19 @@ class MotionGroups {
 
   /// False only if no motion of the group brings the solid to the cube.
   bool reaches(const Group& group, const Cube& cube) const;
-  /// A box that holds, by every motion of the group, all centres of voxels of the cube, moved back, that fall into the
-  /// source's box.
-  SourceBox box(const Group& group, const Cube& cube) const;
+  /// A box that holds, by every motion of the group, the centres of these voxels, moved back, that fall into the
+  /// source's box. Region: Voxels or Cube.
+  template <class Region>
+  SourceBox box(const Group& group, const Region& region) const {
+    SourceBox box = motions_[group.first].box(region);
+    if (group.single()) return box;
+    const SourceBox other = motions_[group.last].box(region);
+    for (std::size_t i = 0; i < 3; ++i) {
+      box.low[i] = std::min(box.low[i], other.low[i]) - group.slack[i];
+      box.high[i] = std::max(box.high[i], other.high[i]) + group.slack[i];
+    }
+    return box;
+  }
 
  private:
   std::uint32_t build(std::uint32_t first, std::uint32_t last);

@@ -118,6 +118,13 @@ class Neighbourhood {
     return some == 0 ? Colour::white : hole == 0 ? Colour::black : Colour::gray;
   }
 
+  /// How many of the cells of the level below are black.
+  int black_children() const {
+    int count = 0;
+    for (std::size_t i = 0; i < sizeof(Bytes); i += sizeof(std::uint64_t)) count += std::popcount(eight(black_, i));
+    return count;
+  }
+
   /// A cell's number, x + 3 (y + 3 z) from the lowest.
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
     return static_cast<std::size_t>((x - low_[0]) + 3 * (y - low_[1]) + 9 * (z - low_[2]));

@@ -8,6 +8,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <optional>
 
 #include "blackleaf/measures.h"
@@ -28,11 +30,23 @@ using detail::MovedBackCentres;
 using detail::Neighbourhood;
 using detail::SourceBox;
 using detail::SourcePoint;
+using detail::Voxels;
 
 // A group's box beside a node has at most this many cells of the node's own level on an axis. One motion needs 3; with
 // 4 a group's motions differ by about the side of the node, and the box meets 3 cells of twice the side at most, a
 // Neighbourhood.
 constexpr std::int64_t kWidth = 4;
+
+// The voxels of a brick by their coordinate along an axis: kPlanes[axis][c].
+constexpr auto kPlanes = [] {
+  std::array<std::array<std::uint64_t, 4>, 3> planes{};
+  for (unsigned bit = 0; bit < 64; ++bit) {
+    planes[0][detail::brick_x(bit)] |= std::uint64_t{1} << bit;
+    planes[1][detail::brick_y(bit)] |= std::uint64_t{1} << bit;
+    planes[2][detail::brick_z(bit)] |= std::uint64_t{1} << bit;
+  }
+  return planes;
+}();
 
 // The cells of a level whose closed cubes meet a box.
 CellRange cells_of(const SourceBox& box, int level) {
@@ -109,13 +123,25 @@ class SweptVoxels {
   }
 
  private:
+  using Four [[gnu::vector_size(16)]] = std::uint32_t;
+
   static constexpr std::int64_t kMargin = 8, kSide = 32;
 
   // Sets the voxels of a brick whose first voxel is (x, y, z).
   void put(std::uint64_t brick, std::size_t x, std::size_t y, std::size_t z) {
     const std::uint64_t rows = detail::in_rows(brick);
-    for (std::size_t row = 0; row < 16; ++row)
-      rows_[y + row % 4 + 32 * (z + row / 4)] |= static_cast<std::uint32_t>(rows >> (4 * row) & 0xF) << x;
+    for (std::size_t k = 0; k < 4; ++k) {
+      // Four rows of four voxels, each brought to the top of 16 bits and from there to its place.
+      const auto plane = static_cast<std::uint32_t>(rows >> (16 * k) & 0xFFFF);
+      const Four parts =
+          ((Four{plane, plane, plane, plane} & Four{0xF, 0xF0, 0xF00, 0xF000}) * Four{0x1000, 0x100, 0x10, 1}) >>
+          12 << static_cast<std::uint32_t>(x);
+      std::uint32_t* const place = &rows_[y + 32 * (z + k)];
+      Four now;
+      std::memcpy(&now, place, sizeof now);
+      now |= parts;
+      std::memcpy(place, &now, sizeof now);
+    }
   }
 
   bool black(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -177,23 +203,41 @@ class SweepProducer {
     return below;
   }
 
-  // The 64 voxels of a node, motion by motion until all are black.
-  std::uint64_t brick(const Task& task, const Cube& cube) const {
+  // The 64 voxels of a node, motion by motion until all are black. Groups that see much black come first, and of each
+  // the motion in its middle: inside the swept space one motion is then mostly enough.
+  std::uint64_t brick(Task& task, const Cube& cube) const {
+    std::ranges::sort(task.candidates, std::ranges::greater(),
+                      [](const Candidate& candidate) { return candidate.source.black_children(); });
     std::uint64_t bits = 0;
     for (const Candidate& candidate : task.candidates) {
+      const MotionGroups::Group& group = groups_[candidate.group];
       const SweptVoxels voxels(candidate.source, candidate.cells);
-      add(bits, candidate.group, cube, voxels);
+      if (!group.single()) bits |= voxels.covered(groups_.motion(groups_[candidate.group + 1].last), cube);
+      if (~bits != 0) add(bits, candidate.group, cube, voxels);
       if (~bits == 0) break;
     }
     return bits;
   }
 
  private:
+  // The box of the brick's voxels that are still white.
+  static Voxels white_box(std::uint64_t bits, const Cube& cube) {
+    Voxels box{{cube.x, cube.y, cube.z}, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::size_t low = 0, high = 3;
+      while (low < 3 && (~bits & kPlanes[i][low]) == 0) ++low;
+      while (high > low && (~bits & kPlanes[i][high]) == 0) --high;
+      box.high[i] = box.low[i] + static_cast<std::int32_t>(high);
+      box.low[i] += static_cast<std::int32_t>(low);
+    }
+    return box;
+  }
+
   // Adds to a brick what the motions of a group make black; halves of the group that see no black voxel are passed
   // over.
   void add(std::uint64_t& bits, std::uint32_t index, const Cube& cube, const SweptVoxels& voxels) const {
     const MotionGroups::Group& group = groups_[index];
-    if (!voxels.any(groups_.box(group, cube))) return;
+    if (!voxels.any(groups_.box(group, white_box(bits, cube)))) return;
     constexpr std::uint32_t kFew = 3;  // not worth a look at the halves
     if (group.last - group.first >= kFew) {
       add(bits, index + 1, cube, voxels);
@@ -293,23 +337,32 @@ std::optional<detail::Extent> farthest(const Octree& octree, const Box& box, std
   return all;
 }
 
-}  // namespace
-
-Octree sweep(const Octree& octree, std::span<const Motion> motions, Leaving leaving, const Work& work) {
-  const std::optional<Box> box = bounding_box(octree);
-  if (!box) return octree;
-  detail::TargetUniverse target{octree.depth(), {}};
+detail::TargetUniverse universe_for(const Octree& octree, const Box& box, std::span<const Motion> motions,
+                                    Leaving leaving) {
   if (leaving != Leaving::clip)
-    if (const auto extent = farthest(octree, *box, motions))
-      target = detail::target_universe(octree.depth(), *extent, leaving);
+    if (const auto extent = farthest(octree, box, motions))
+      return detail::target_universe(octree.depth(), *extent, leaving, {"the solid on its way", "change the path"});
+  return {octree.depth(), {}};
+}
+
+Octree sweep_into(const detail::TargetUniverse& target, const Octree& octree, const Box& box,
+                  std::span<const Motion> motions, const Work& work) {
   std::vector<FixedMotion> fixed;
   fixed.reserve(motions.size());
   for (const Motion& motion : motions)
     if (motion.translation().norm() <= FixedMotion::kMaxTranslation)  // else clipped away
       fixed.push_back(FixedMotion(motion).shifted(target.offset));
-  const MotionGroups groups(fixed, *box, target.depth);
-  return detail::produce(SweepProducer(groups, octree, *box, target.depth), target.depth,
+  const MotionGroups groups(fixed, box, target.depth);
+  return detail::produce(SweepProducer(groups, octree, box, target.depth), target.depth,
                          detail::grown_frame(octree.frame(), target), work);
+}
+
+}  // namespace
+
+Octree sweep(const Octree& octree, std::span<const Motion> motions, Leaving leaving, const Work& work) {
+  const std::optional<Box> box = bounding_box(octree);
+  if (!box) return octree;
+  return sweep_into(universe_for(octree, *box, motions, leaving), octree, *box, motions, work);
 }
 
 Octree sweep(const Octree& octree, const Path& path, double step, Leaving leaving, const Work& work) {
@@ -324,11 +377,18 @@ std::vector<Motion> motions_along(const Octree& octree, const Path& path, double
   return motions;
 }
 
-void require_inside(const Octree& octree, std::span<const Motion> motions) {
+RoomForMotions room_for(const Octree& octree, std::span<const Motion> motions, Leaving leaving, const Work& work) {
+  RoomForMotions room{octree, {motions.begin(), motions.end()}};
   const std::optional<Box> box = bounding_box(octree);
-  if (!box) return;
-  if (const auto extent = farthest(octree, *box, motions))
-    detail::target_universe(octree.depth(), *extent, Leaving::error);
+  if (!box) return room;
+  const detail::TargetUniverse target = universe_for(octree, *box, motions, leaving);
+  if (target.depth == octree.depth()) return room;
+  const std::array<Motion, 1> rest;
+  room.octree = sweep_into(target, octree, *box, rest, work);
+  const Eigen::Vector3d offset(static_cast<double>(target.offset[0]), static_cast<double>(target.offset[1]),
+                               static_cast<double>(target.offset[2]));
+  for (Motion& motion : room.motions) motion = motion.about(offset);
+  return room;
 }
 
 }  // namespace blackleaf

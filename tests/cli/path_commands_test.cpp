@@ -160,6 +160,14 @@ TEST_F(PathCommands, AnimateRefusesBeforeItWrites) {
           "20.5 voxels below y = 0");
   done({"animate", "o.octree", "--path", "far.json", "-o", "f%d.octree", "--frames", "2", "--clip"});
   EXPECT_TRUE(load(folder() / "f2.octree").octree.is_empty());
+  // Grown, all frames have one universe.
+  done({"animate", "o.octree", "--path", "far.json", "-o", "g%d.octree", "--frames", "2", "--grow"});
+  const Octree first = load(folder() / "g1.octree").octree, second = load(folder() / "g2.octree").octree;
+  EXPECT_EQ(first.depth(), 6);
+  EXPECT_EQ(second.depth(), 6);
+  EXPECT_EQ(first.frame(), second.frame());
+  EXPECT_TRUE(first == box(6, {4, 5 + 32, 6}, {12, 12 + 32, 13}));
+  EXPECT_EQ(first.frame().origin, Eigen::Vector3d(0, -32, 0));
 }
 
 TEST_F(PathCommands, PercentSignsMayBeInFrameNames) {

@@ -100,12 +100,13 @@ TEST(Sweep, LeavesAsMovesDo) {
     }
     left += leaves;
     if (!leaves) {
-      EXPECT_NO_THROW(require_inside(octree, motions));
+      EXPECT_TRUE(room_for(octree, motions).octree == octree);
       EXPECT_TRUE(sweep(octree, motions) == sweep(octree, motions, Leaving::clip));
       EXPECT_EQ(sweep(octree, motions, Leaving::grow).depth(), depth);
       continue;
     }
-    EXPECT_THROW(require_inside(octree, motions), Error);
+    EXPECT_THROW(room_for(octree, motions), Error);
+    EXPECT_TRUE(room_for(octree, motions, Leaving::clip).octree == octree);
     EXPECT_THROW(sweep(octree, motions), Error);
     // Grown: the same as in a universe that was large enough from the start, at the place that the frame tells.
     const Octree grown = sweep(octree, motions, Leaving::grow);
@@ -129,6 +130,13 @@ TEST(Sweep, LeavesAsMovesDo) {
       for (std::size_t i = 0; i < moved.voxels.size(); ++i) expected.voxels[i] = expected.voxels[i] || moved.voxels[i];
     }
     ASSERT_TRUE(grown == reference::octree(expected));
+    // The solid in that universe needs no more room.
+    const RoomForMotions room = room_for(octree, motions, Leaving::grow);
+    EXPECT_EQ(room.octree.depth(), grown.depth());
+    EXPECT_EQ(room.octree.frame(), grown.frame());
+    EXPECT_EQ(volume(room.octree), volume(octree));
+    EXPECT_TRUE(room.octree.contains(offset[0], offset[1], offset[2]) == octree.contains(0, 0, 0));
+    EXPECT_NO_THROW(sweep(room.octree, room.motions));
   }
   EXPECT_GT(left, 60);
 }
