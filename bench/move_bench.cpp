@@ -7,6 +7,7 @@
 #include "allocations.h"
 #include "contenders.h"
 #include "inputs.h"
+#include "octree/brick.h"
 #include "octree/produce.h"
 #include "papers/wa87.h"
 
