@@ -15,7 +15,7 @@ void add_combine() {
   for (const auto& [name, operation] : operations)
     for (const int depth : {8, 9, 10})
       for (const int threads : {1, 2})
-        contender(name + ("/" + side_name(depth)) + "/t" + std::to_string(threads), "ours",
+        contender(std::string(name) + "/" + side_name(depth) + "/t" + std::to_string(threads), "ours",
                   [=](benchmark::State& state) {
                     const Octree &a = bunny(depth), &b = moved_bunny(depth);
                     for (auto _ : state) benchmark::DoNotOptimize(operation(a, b, {threads, {}}));
