@@ -6,8 +6,8 @@
 
 #include "blackleaf/motion.h"
 #include "blackleaf/octree.h"
+#include "cell_range.h"
 #include "octree/brick.h"
-#include "source_window.h"
 
 namespace blackleaf::detail {
 

@@ -15,7 +15,7 @@
 #include <cstring>
 
 #include "blackleaf/octree.h"
-#include "source_window.h"
+#include "cell_range.h"
 
 namespace blackleaf::detail {
 

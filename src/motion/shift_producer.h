@@ -12,6 +12,7 @@
 
 #include "brick_shift.h"
 #include "neighbourhood.h"
+#include "octree/node_arrays.h"
 
 namespace blackleaf::detail {
 
