@@ -44,6 +44,28 @@ void MotionOptions::add_to(CLI::App& app, const std::string& of) {
       ->excludes(translate);
 }
 
+void MotionOptions::add_reflection_to(CLI::App& app, const std::string& of) {
+  add_text(app, "--reflect", reflect_, "AXES",
+           "first mirror " + of + " along x, y or z, or several like x,z, about the universe's centre or --about");
+}
+
+LatticeSymmetry MotionOptions::reflection() const {
+  LatticeSymmetry result;
+  if (!reflect_) return result;
+  const std::string& text = *reflect_;
+  // One letter or several with commas between, each once.
+  bool good = text.size() % 2 == 1;
+  for (std::size_t i = 0; good && i < text.size(); ++i) {
+    const int axis = text[i] - 'x';
+    good = i % 2 == 1 ? text[i] == ',' : axis >= 0 && axis < 3 && !result.reversed(axis);
+    if (good && i % 2 == 0) result = LatticeSymmetry::reflection(axis) * result;
+  }
+  if (!good)
+    throw Error(ErrorCode::bad_argument, fmt::format("--reflect is '{}', which names no axes", text),
+                "use x, y or z, or several like x,z");
+  return result;
+}
+
 Motion MotionOptions::motion(const Octree& octree) const {
   Motion motion;
   if (matrix_) {
@@ -52,11 +74,16 @@ Motion MotionOptions::motion(const Octree& octree) const {
     for (const std::string& next : rotations_) motion = parse_rotation("--rotate", next) * motion;
     if (translation_) motion = Motion::translation(parse_vector("--translate", *translation_)) * motion;
   }
-  return about_ ? motion.about(centre_of_rotation(*about_, octree)) : motion;
+  if (!about_) return motion;
+  const Eigen::Vector3d centre = centre_of_rotation(*about_, octree);
+  // A reflection about `centre` is one about the universe's centre and then a shift.
+  const Eigen::Vector3d off = centre - Eigen::Vector3d::Constant(octree.side() / 2.0);
+  return motion.about(centre) * Motion::translation(off - reflection().matrix() * off);
 }
 
 Json MotionOptions::as_json(const Motion& motion) const {
   Json options = Json::object();
+  if (reflect_) options["reflect"] = *reflect_;
   if (!rotations_.empty()) options["rotate"] = rotations_;
   if (translation_) options["translate"] = *translation_;
   if (about_) options["about"] = *about_;

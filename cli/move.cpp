@@ -50,6 +50,7 @@ int run_move(Session& session) {
   add_octree_input(session.app(), "FILE", input);
   add_output(session.app(), output, "octree file to write, or - for standard output");
   motion_options.add_to(session.app(), "the solid");
+  motion_options.add_reflection_to(session.app(), "the solid");
   leaving.add_to(session.app());
   add_label(session.app(), label);
   session.app().add_flag("--stats", stats, "report WA87's Table 2: B, I, M, V, I/V of source and target");
@@ -63,16 +64,18 @@ int run_move(Session& session) {
   if (label && !file.labels) refuse_label(input);
   const bool all_labels = file.labels && !label;
   const Octree source = label ? solid_of(*file.labels, *label, input) : file.octree;
+  const LatticeSymmetry reflection = motion_options.reflection();
   const Motion motion = motion_options.motion(source);
   if (!motion_options.moves())
-    session.warn("no motion is given, so the solid stays where it is; give --rotate, --translate or --matrix");
+    session.warn(
+        "no motion is given, so the solid stays where it is; give --rotate, --translate, --matrix or --reflect");
   std::optional<LabelMap> labels;
   Octree target;
   session.stage("move", [&](const Work& work) {
     if (all_labels)
-      labels = move(*file.labels, motion, leaving.choice(), work);
+      labels = move(transform(*file.labels, reflection, work), motion, leaving.choice(), work);
     else
-      target = move(source, motion, leaving.choice(), work);
+      target = move(transform(source, reflection, work), motion, leaving.choice(), work);
   });
   Json options = motion_options.as_json(motion);
   options["leaving"] = leaving.name();

@@ -52,7 +52,8 @@ std::string voxels(std::int64_t fixed) {
   std::string text = std::to_string(value);
   while (text.back() == '0') text.pop_back();
   if (text.back() == '.') text.pop_back();
-  return text == "0" ? "less than 0.000001" : text;
+  if (text == "0") text = "less than 0.000001";
+  return text + (text == "1" ? " voxel" : " voxels");
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ TargetUniverse target_universe(int depth, const Extent& extent, Leaving leaving,
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string axis(1, static_cast<char>('x' + i));
     const auto tell = [&](std::int64_t by, const std::string& where) {
-      if (by > kSlack) sides += (sides.empty() ? "" : ", ") + voxels(by) + " voxels " + where;
+      if (by > kSlack) sides += (sides.empty() ? "" : ", ") + voxels(by) + " " + where;
     };
     tell(below(i), "below " + axis + " = 0");
     tell(above(i), "beyond " + axis + " = " + std::to_string(std::int64_t{1} << depth));

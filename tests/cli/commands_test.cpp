@@ -119,6 +119,25 @@ TEST_F(Commands, RotationsApplyInOrderAndTranslationsMayBeNegative) {
   EXPECT_EQ(bounds("i.octree"), bounds("b.octree"));
 }
 
+TEST_F(Commands, MoveReflects) {
+  make_box("b.octree", 4, {1, 2, 3}, {2, 4, 6});
+  done({"move", "b.octree", "--reflect", "x", "-o", "m.octree"});  // about the centre
+  EXPECT_EQ(bounds("m.octree"), json::parse("[[14,2,3],[15,4,6]]"));
+  EXPECT_EQ(info("m.octree")["frame"], info("b.octree")["frame"]);
+  EXPECT_EQ(info("m.octree")["metadata"]["options"]["reflect"], "x");
+  done({"move", "b.octree", "--reflect", "y,z", "--about", "2.5,3,4.5", "-o", "m.octree"});
+  EXPECT_EQ(bounds("m.octree"), bounds("b.octree"));
+  done({"move", "b.octree", "--reflect", "y", "--about", "0,3.5,0", "-o", "m.octree"});
+  EXPECT_EQ(bounds("m.octree"), json::parse("[[1,3,3],[2,5,6]]"));
+  // First the reflection, (15,2,3) to (14,4,6), then the quarter turn about the centre, then the translation.
+  done({"move", "b.octree", "--rotate", "0,0,1:90", "--reflect", "x", "--about", "centre", "--translate", "0,0,2", "-o",
+        "m.octree"});
+  EXPECT_EQ(bounds("m.octree"), json::parse("[[12,14,5],[14,15,8]]"));
+  refused({"move", "b.octree", "--reflect", "x", "--about", "corner", "-o", "n.octree"}, "2 voxels below x = 0");
+  for (const std::string axes : {"", "q", "x,", "x,x", "xy", "x;y", "z,y,x,z"})
+    refused({"move", "b.octree", "--reflect", axes, "-o", "n.octree"}, "names no axes");
+}
+
 TEST_F(Commands, MoveByMatrix) {
   make_box("b.octree", 4, {1, 2, 3}, {2, 4, 6});
   write("m.txt", "0 -1 0 16\n1 0 0 0\n0 0 1 0\n0 0 0 1\n");

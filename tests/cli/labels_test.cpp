@@ -41,6 +41,22 @@ class LabelsCommand : public CliTest {
   }
 };
 
+TEST_F(LabelsCommand, TranslateShiftsAllLabelsOrOne) {
+  EXPECT_EQ(done({"translate", "a.octree", "0,0,4", "--grow", "-o", "t.octree"}).out.substr(0, 29),
+            "t.octree: depth 3, 2 labels, ");
+  EXPECT_EQ(info("t.octree")["labels"], json::parse(R"([{"label":3,"volume":16,"bounding_box":[[0,0,4],[4,4,5]]},
+                            {"label":200,"volume":1,"bounding_box":[[1,2,7],[2,3,8]]}])"));
+  done({"translate", "t.octree", "0,0,-4", "-o", "b.octree"});
+  done({"translate", "a.octree", "0,0,-1", "--clip", "-o", "c.octree"});
+  EXPECT_EQ(info("c.octree")["labels"], json::parse(R"([{"label":200,"volume":1,"bounding_box":[[1,2,2],[2,3,3]]}])"));
+  refused({"translate", "a.octree", "0,0,-1", "-o", "d.octree"}, "1 voxel below z = 0");
+  done({"translate", "a.octree", "0,0,-1", "--label", "200", "-o", "e.octree"});
+  EXPECT_EQ(info("e.octree")["volume"], 1);
+  EXPECT_FALSE(info("e.octree").contains("labels"));
+  EXPECT_EQ(info("e.octree")["bounding_box"], json::parse("[[1,2,2],[2,3,3]]"));
+  EXPECT_EQ(done({"translate", "a.octree", "0,0,0", "-o", "f.octree", "--json"}).json()["label_count"], 2);
+}
+
 TEST_F(LabelsCommand, BuildKeepsAllLabelsAndInfoListsThem) {
   const json facts = info("a.octree");
   EXPECT_EQ(facts["depth"], 2);
@@ -91,8 +107,6 @@ TEST_F(LabelsCommand, EveryLabelOpensAsItsOwnOctree) {
 }
 
 TEST_F(LabelsCommand, WithoutALabelAllButZeroAreOneSolid) {
-  noted({"translate", "a.octree", "0,0,0", "-o", "t.octree"});
-  EXPECT_EQ(info("t.octree")["volume"], 17);
   noted({"draw", "a.octree", "--view", "1,2,3", "-o", "a.svg"});
   noted({"export", "a.octree", "-o", "a.stl"});
   EXPECT_EQ(done({"translate", "a.octree", "0,0,0", "-o", "q.octree", "--quiet"}).out, "");
