@@ -155,7 +155,7 @@ TEST(Offset, LeavingSaysByHowMuchAndWhere) {
     EXPECT_EQ(error.code(), ErrorCode::out_of_universe);
     EXPECT_EQ(
         std::string(error.what()),
-        "the grown solid leaves the universe: 1 voxels below x = 0, 3 voxels beyond z = 16; grow it by less, clip "
+        "the grown solid leaves the universe: 1 voxel below x = 0, 3 voxels beyond z = 16; grow it by less, clip "
         "it (--clip) or grow the universe (--grow)");
   }
 }
