@@ -61,6 +61,7 @@ void add_labels();
 // One function a peer, each in a file of its own in peers/.
 void add_scanline();
 void add_openvdb();
+void add_openvdb_translate();
 void add_openvdb_sets();
 void add_octomap();
 

@@ -47,6 +47,10 @@ def demands():
         yield f"{key}: OpenVDB, half-width 1", lambda f, k=key: f.times(k, "openvdb-1"), "at least", 15
         yield f"wrong/{side}: voxels", lambda f, k=f"wrong/{side}": f.ours(k), "at most", 0
     yield "mesh: growth from 512 to 1024", lambda f: f.growth("mesh/512/t1", "mesh/1024/t1"), "at most", 4.3
+    key = "translate/1024/t1"
+    yield f"{key}: move by the same vector", lambda f, k=key: f.times(k, "move"), "at least", 3
+    yield f"{key}: OpenVDB, copying and pruning", lambda f, k=key: f.times(k, "openvdb-copy"), "at least", 10
+    yield f"{key}: OpenVDB, GridTransformer", lambda f, k=key: f.times(k, "openvdb"), "at least", 80
     yield "memory/1024: OpenVDB", lambda f: f.times("memory/1024", "openvdb"), "at least", 4
     for key in ("combine", "combine-and", "combine-minus"):
         for who in ("openvdb-csg", "openvdb-csg-copy"):

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   add_labels();
   add_scanline();
   add_openvdb();
+  add_openvdb_translate();
   add_openvdb_sets();
   add_octomap();
   benchmark::Initialize(&argc, argv);

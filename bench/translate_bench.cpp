@@ -1,7 +1,9 @@
-// translate/N/tT: a shift by (5, -7, 3) voxels, odd on every axis. translate-even/N/tT: by (16, -32, 48).
+// translate/N/tT: a shift by (5, -7, 3) voxels, odd on every axis. translate-even/N/tT: by (16, -32, 48). "move" is the
+// general engine by the same vector, which move() itself would give to translate().
 #include "blackleaf/move.h"
 #include "contenders.h"
 #include "inputs.h"
+#include "motion/move_general.h"
 #include "papers/an84.h"
 
 namespace blackleaf::bench {
@@ -12,6 +14,13 @@ using Shift = std::array<std::int64_t, 3>;
 void ours(benchmark::State& state, int depth, const Shift& by, int threads) {
   const Octree& octree = bunny(depth);
   for (auto _ : state) benchmark::DoNotOptimize(translate(octree, by, Leaving::error, {threads, {}}));
+}
+
+void general(benchmark::State& state, int depth, const Shift& by, int threads) {
+  const Octree& octree = bunny(depth);
+  const Motion motion =
+      Motion::translation({static_cast<double>(by[0]), static_cast<double>(by[1]), static_cast<double>(by[2])});
+  for (auto _ : state) benchmark::DoNotOptimize(detail::move_by_look_up(octree, motion, Leaving::error, {threads, {}}));
 }
 
 // AN84 changes its tree in place; making the tree is not timed.
@@ -38,6 +47,7 @@ void add_translate() {
       for (const int threads : {1, 2}) {
         const std::string key = name + "/" + side_name(depth) + "/t" + std::to_string(threads);
         contender(key, "ours", [=](benchmark::State& s) { ours(s, depth, by, threads); });
+        contender(key, "move", [=](benchmark::State& s) { general(s, depth, by, threads); });
         if (threads == 1 && depth <= 9) contender(key, "paper", [=](benchmark::State& s) { paper(s, depth, by); });
       }
 }
