@@ -5,7 +5,7 @@
 // level H is then thrown to the place that its label path plus the displacement names, and the tree is compacted at
 // the end (sections 3.1 and 3.2). Levels are counted here from the voxels (0) up, as everywhere in this project.
 //
-// This is the paper's own algorithm, kept as a second witness and as a baseline. The product does not use it.
+// This is the paper's own algorithm, kept as a second witness and as a baseline. The libraries do not use it.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 // emits (count, datum) tuples (section 4); the tuples are cut to cubic numbers, and the octree's nodes are formed from
 // them bottom-up in one pass (section 3).
 //
-// This is the paper's own algorithm, kept as a second witness and as a baseline. The product does not use it.
+// This is the paper's own algorithm, kept as a second witness and as a baseline. The libraries do not use it.
 #pragma once
 
 #include <array>

@@ -6,7 +6,7 @@
 // tested against the moved cube by spheres and upright cubes (relation B). Only internal nodes are stored; children's
 // colours are bits of the parent (lemma: I = (T - 1) / 8).
 //
-// This is the paper's own algorithm, kept as a second witness and as a baseline. The product does not use it. Which
+// This is the paper's own algorithm, kept as a second witness and as a baseline. The libraries do not use it. Which
 // voxel centres belong to a moved cube is decided with FixedMotion's integers, so its answer must equal the product's
 // bit for bit.
 #pragma once

@@ -84,7 +84,8 @@ Table measured(const Work& work) {
     Random random(static_cast<std::uint64_t>(m));
     std::uint64_t black = 0, internal = 0;
     for (int i = 0; i < motions; ++i) {
-      const Motion turn = Motion::rotation(random.rotation());
+      // The first is only shifted, about the middle, where one voxel becomes eight.
+      const Motion turn = i == 0 ? Motion() : Motion::rotation(random.rotation());
       // Where all of it stays inside, whatever the turn; every fourth cube about the middle, where most nodes are
       // split.
       const double reach = i % 4 == 0 ? 0 : middle - std::sqrt(0.75) * side;
