@@ -124,7 +124,7 @@ std::vector<std::string_view> letters(std::string_view text) {
     if (byte == ' ')
       result.emplace_back();
     else if (byte > ' ' && byte <= '~')
-      result.push_back(kLetters[byte - std::size_t{0x21}]);
+      result.push_back(kLetters[static_cast<std::size_t>(byte - '!')]);
     else
       result.push_back(kBox);
   }
