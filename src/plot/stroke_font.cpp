@@ -134,7 +134,7 @@ std::vector<std::string_view> letters(std::string_view text) {
 int width(std::string_view letter) {
   if (letter.empty()) return kSpace;
   int most = 0;
-  for (std::size_t i = 0; i < letter.size(); i += letter[i] == ' ' ? 1 : 2)
+  for (std::size_t i = 0; i < letter.size(); i += letter[i] == ' ' ? 1u : 2u)
     if (letter[i] != ' ') most = std::max(most, letter[i] - '0');
   return most;
 }
