@@ -23,7 +23,7 @@ struct SheetOptions {
   ProjectionAngle angle = ProjectionAngle::third;
   double voxel_mm = 1;  // a voxel's side in the world
   double scale = 0;     // millimetres on the page for one in the world; 0: the largest of 1, 2, 5, 10 ... that fits
-  double pen_width_mm = 0.35;  // of the frame and the title block's text; the frame is twice as heavy
+  double pen_width_mm = 0.35;  // of the title block's walls; the frame is twice as heavy, its text thinner
   std::string title = {}, source = {}, date = {}, size_name = {};  // UTF-8, for the title block; each may be empty
   std::string scale_note = {};                                     // behind the scale, e.g. "1 voxel = 1 mm"
 };

@@ -10,7 +10,7 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-constexpr double kLabelHeight = 1.8, kTextHeight = 3.5, kTitleHeight = 5, kPadding = 2;
+constexpr double kLabelHeight = 2.2, kTextHeight = 3.5, kTitleHeight = 5, kPadding = 2;
 
 void add_box(Polylines& lines, const Point& low, const Point& high) {
   const std::vector<Point> box{low, {high[0], low[1]}, high, {low[0], high[1]}, low};
@@ -64,7 +64,7 @@ class Cells {
 std::vector<Layer> title_block(const SheetOptions& options, double scale) {
   Layer frame{"frame", {.width_mm = 2 * options.pen_width_mm}, {}};
   Layer walls{"title block", {.width_mm = options.pen_width_mm}, {}};
-  Layer text{"text", {.width_mm = options.pen_width_mm}, {}};
+  Layer text{"text", {.width_mm = 0.7 * options.pen_width_mm}, {}};
   const Point low(kLeftMargin, kMargin), high(options.width_mm - kMargin, options.height_mm - kMargin);
   add_box(frame.lines, low, high);
   const Point corner(high[0] - kBlockWidth, low[1]);
