@@ -1,6 +1,10 @@
 // draw/INPUT/tT: the exact line drawing seen from (12, -16, 15). ball32 is the ball of radius 32 about a lattice point.
+// svg/SIDE: a drawing of the bunny as SVG text, svg-bytes/SIDE its size; order/SIDE: its strokes joined and ordered for
+// a pen.
 #include "blackleaf/drawing.h"
 #include "blackleaf/implicit.h"
+#include "blackleaf/pen_order.h"
+#include "blackleaf/picture.h"
 #include "contenders.h"
 #include "inputs.h"
 #include "papers/va88.h"
@@ -23,6 +27,17 @@ void ours(benchmark::State& state, const Octree& octree, int threads) {
   for (auto _ : state) benchmark::DoNotOptimize(draw(octree, the_view(), {threads, {}}));
 }
 
+void svg(benchmark::State& state, const Octree& octree) {
+  const Picture picture = lay_out(draw(octree, the_view()));
+  for (auto _ : state) benchmark::DoNotOptimize(to_svg(picture));
+}
+
+void pen_order(benchmark::State& state, const Octree& octree) {
+  const Picture picture = lay_out(draw(octree, the_view()));
+  for (auto _ : state) benchmark::DoNotOptimize(in_pen_order(picture));
+  state.counters["strokes"] = static_cast<double>(pen_travel(picture).strokes);
+}
+
 // VA88 compares every box with all boxes in front of it.
 void paper(benchmark::State& state, const Octree& octree) {
   for (auto _ : state) benchmark::DoNotOptimize(papers::va88::draw(octree, Eigen::Vector3d(12, -16, 15)));
@@ -31,6 +46,12 @@ void paper(benchmark::State& state, const Octree& octree) {
 }  // namespace
 
 void add_drawing() {
+  for (const int depth : {8, 10}) {
+    contender("svg/" + side_name(depth), "ours", [=](benchmark::State& s) { svg(s, bunny(depth)); });
+    sized("svg-bytes/" + side_name(depth), "ours",
+          [=] { return to_svg(lay_out(draw(bunny(depth), the_view()))).size(); });
+    contender("order/" + side_name(depth), "ours", [=](benchmark::State& s) { pen_order(s, bunny(depth)); });
+  }
   for (const int threads : {1, 2}) {
     const std::string suffix = "/t" + std::to_string(threads);
     for (const int depth : {6, 7, 8, 9}) {

@@ -1,4 +1,4 @@
-// blackleaf draw: the exact hidden-line drawing of an octree (VA88).
+// blackleaf draw: exact hidden-line drawings of octrees (VA88).
 #include <fmt/format.h>
 
 #include "blackleaf/drawing.h"
@@ -6,75 +6,135 @@
 #include "blackleaf/error.h"
 #include "commands.h"
 #include "draw_page.h"
+#include "draw_pens.h"
+#include "draw_sheet.h"
+#include "file/atomic_write.h"
 #include "files.h"
 #include "options.h"
 #include "picture_options.h"
 
 namespace blackleaf::cli {
+namespace {
+
+// What is drawn.
+struct Solids {
+  std::vector<std::string> names;
+  std::vector<Octree> octrees;
+};
+
+// A picture without a page, and with one.
+struct Result {
+  std::optional<View> view;   // of a picture without a sheet
+  std::vector<Layer> layers;  // of that, in voxels
+  std::size_t strokes = 0;
+  double length = 0;  // voxels
+  std::optional<OrderedPicture> page;
+};
+
+// What of the solids is seen from one side, in voxels.
+std::vector<Layer> layers_of(const Solids& solids, const View& view, const PenArguments& pens, Result& result,
+                             const Work& work) {
+  std::vector<SolidLines> lines(1);
+  lines[0].inner = draw(solids.octrees[0], view, work).strokes;
+  for (const SolidLines& solid : lines)
+    for (const std::vector<Stroke>* strokes : {&solid.outline, &solid.inner, &solid.hidden}) {
+      result.strokes += strokes->size();
+      for (const Stroke& stroke : *strokes) result.length += (stroke.to - stroke.from).norm();
+    }
+  return pens.layers(solids.names, std::move(lines));
+}
+
+void report(const Session& session, const std::string& output, const Result& result, bool stats) {
+  const std::optional<std::uint64_t> file_bytes = size_of(output);
+  if (session.json()) {
+    Json json{{"output", output}};
+    if (result.view) json["view"] = result.view->direction();
+    json["strokes"] = result.strokes;
+    json["length"] = result.length;
+    json["file_bytes"] = file_bytes ? Json(*file_bytes) : Json();
+    if (stats) json["pen"] = {{"before", stats_json(result.page->before)}, {"after", stats_json(result.page->after)}};
+    print_out(json);
+    return;
+  }
+  if (!session.quiet())
+    print_out(fmt::format("{}: {} strokes, {:.6f} voxels long\n", output, grouped(result.strokes), result.length));
+  if (stats) print_out(stats_text(result.page->before, result.page->after));
+}
+
+}  // namespace
 
 int run_draw(Session& session) {
   Label label;
-  std::string input, view_text, output;
+  std::string input, output;
+  std::optional<std::string> view_text;
   PageArguments page;
+  PenArguments pens;
+  SheetArguments sheet;
   add_octree_input(session.app(), "FILE", input);
-  session.app()
-      .add_option("--view", view_text,
-                  "direction toward the viewer, rounded to 2^-20 of its largest component; +z is up in the picture")
-      ->required()
-      ->type_name("x,y,z");
+  add_text(session.app(), "--view", view_text, "x,y,z",
+           "direction toward the viewer, rounded to 2^-20 of its largest component; +z is up in the picture");
   add_output(session.app(), output, "picture: .svg .pdf .png .hpgl .dxf .json; - prints svg, hpgl, dxf or json");
   page.add_to(session.app());
+  pens.add_to(session.app());
+  sheet.add_to(session.app());
   add_label(session.app(), label);
   session.add_json();
   session.set_example("blackleaf draw bunny.octree --view 3,-4,2 -o bunny.svg");
   if (!session.parse()) return kDone;
 
   const PictureFormat format = page.format(output);
-  page.check(format);
-  const View view = parse_view(view_text);
+  const bool in_voxels = format == PictureFormat::json && !sheet.given();
+  page.check(in_voxels, pens.given());
+  pens.check(1);
+  sheet.check(page.size());
+  Result result;
+  if (!sheet.given()) {
+    if (!view_text)
+      throw Error(ErrorCode::bad_argument, "--view is required", "give one like --view 3,-4,2, or --sheet");
+    result.view = parse_view(*view_text);
+  } else if (view_text) {
+    throw Error(ErrorCode::bad_argument, "--sheet has views of its own", "leave out --view");
+  }
   if (output == "-" && session.json())
     throw Error(ErrorCode::bad_argument, "-o - and --json both want standard output", "write the picture to a file");
   if (output != "-") check_output(output);
 
-  const Octree octree = read_solid(session, input, label);
-  const LineDrawing drawing = session.stage("draw", [&](const Work& work) { return draw(octree, view, work); });
-  if (drawing.strokes.empty()) session.warn("nothing is seen: the picture is empty");
-  const double length = drawing.length();
-  OrderedPicture ordered;
-  if (format != PictureFormat::json)
-    ordered = session.stage("order", [&](const Work&) {
-      std::vector<Layer> layers;
-      layers.push_back({"visible", {.width_mm = page.pen_width()}, polylines(drawing.strokes)});
-      const PageOptions options = page.page_for(layers);
-      Picture picture = lay_out(std::move(layers), view, options);
-      picture.source = base_name(input);
-      return ordered_picture(std::move(picture), page.joining(format));
-    });
-  session.write_stage([&] {
-    if (output != "-") {
-      if (format == PictureFormat::json) return write_drawing(drawing, output);
-      return write_picture(ordered.picture, output);
+  Solids solids;
+  solids.octrees.push_back(read_solid(session, input, label));
+  solids.names.push_back(base_name(input));
+  const std::string source = solids.names[0];
+  Picture picture = session.stage("draw", [&](const Work& work) {
+    if (!sheet.given()) {
+      result.layers = layers_of(solids, *result.view, pens, result, work);
+      return in_voxels ? Picture{} : lay_out(result.layers, *result.view, page.page_for(result.layers));
     }
-    const std::string text = format == PictureFormat::json ? to_json(drawing) : text_of(ordered.picture, format);
+    const SheetOptions options =
+        sheet.options(page.size(), page.title().value_or(source), source, solids.octrees[0].frame());
+    std::array<std::vector<Layer>, 4> views;
+    const std::array<View, 4> directions = sheet_views(options.angle);
+    for (std::size_t i = 0; i < views.size(); ++i) views[i] = layers_of(solids, directions[i], pens, result, work);
+    return engineering_sheet(views, options);
+  });
+  if (result.strokes == 0) session.warn("nothing is seen: the picture is empty");
+  if (!in_voxels) {
+    picture.source = source;
+    result.page =
+        session.stage("order", [&](const Work&) { return ordered_picture(std::move(picture), page.joining(format)); });
+  }
+  session.write_stage([&] {
+    if (output != "-" && !in_voxels) return write_picture(result.page->picture, output);
+    std::string text;
+    if (!in_voxels) {
+      text = text_of(result.page->picture, format);
+    } else {
+      const bool plain = solids.octrees.size() == 1 && !pens.outline() && pens.hidden() == HiddenLines::none;
+      text = plain ? to_json(result.layers[0].lines, *result.view) : to_json(result.layers, *result.view);
+    }
+    if (output != "-") return detail::write_atomically(output, text);
     check_interrupt();
     print_out(text);
   });
-
-  if (output == "-") return kDone;
-  const std::optional<std::uint64_t> file_bytes = size_of(output);
-  if (session.json()) {
-    Json report{{"output", output},
-                {"view", view.direction()},
-                {"strokes", drawing.strokes.size()},
-                {"length", length},
-                {"file_bytes", file_bytes ? Json(*file_bytes) : Json()}};
-    if (page.stats()) report["pen"] = {{"before", stats_json(ordered.before)}, {"after", stats_json(ordered.after)}};
-    print_out(report);
-    return kDone;
-  }
-  if (!session.quiet())
-    print_out(fmt::format("{}: {} strokes, {:.6f} voxels long\n", output, grouped(drawing.strokes.size()), length));
-  if (page.stats()) print_out(stats_text(ordered.before, ordered.after));
+  if (output != "-") report(session, output, result, page.stats());
   return kDone;
 }
 

@@ -34,7 +34,6 @@ void PageArguments::add_to(CLI::App& app) {
   add_text(app, "--format", format_, "FORMAT", "svg, hpgl, dxf or json, for -o -");
   add_text(app, "--size", size_, "SIZE",
            "page: A0 to A6, turned to suit the picture, or WxH in mm (default: the drawing's shape, 180 mm)");
-  add_number(app, "--pen-width", pen_width_, true, "width of the lines in mm (default 0.25)");
   add_text(
       app, "--order", order_, "ORDER",
       "for the pen: strokes (each a line of its own, those that meet in a row), chains (joined into long lines) or "
@@ -64,13 +63,13 @@ PictureFormat PageArguments::format(const std::string& output) const {
   return *from_suffix;
 }
 
-void PageArguments::check(PictureFormat format) const {
+void PageArguments::check(bool in_voxels, bool pens) const {
   if (order_ && *order_ != "strokes" && *order_ != "chains" && *order_ != "none")
     throw Error(ErrorCode::bad_argument, fmt::format("--order is '{}', which is unknown", *order_),
                 "use strokes, chains or none");
-  if (format == PictureFormat::json)
+  if (in_voxels)
     for (const auto& [given, name] : {std::pair{size_.has_value(), "--size"},
-                                      {pen_width_.has_value(), "--pen-width"},
+                                      {pens, "a pen's option"},
                                       {order_.has_value(), "--order"},
                                       {title_.has_value(), "--title"},
                                       {stats_, "--stats"}})
@@ -87,7 +86,6 @@ void PageArguments::check(PictureFormat format) const {
 
 PageOptions PageArguments::page_for(std::span<const Layer> layers) const {
   PageOptions page;
-  page.pen_width_mm = pen_width();
   page.title = title_.value_or("");
   if (!size_) return page;
   const PageSize size = parse_page_size("--size", *size_);
@@ -109,7 +107,8 @@ std::optional<Joining> PageArguments::joining(PictureFormat format) const {
   }
   if (format == PictureFormat::hpgl) return Joining::chains;
   // On a screen or a printer nothing travels; --stats wants the order all the same.
-  if ((format == PictureFormat::png || format == PictureFormat::json) && !stats_) return std::nullopt;
+  if (format == PictureFormat::png || format == PictureFormat::json)
+    return stats_ ? std::optional(Joining::strokes) : std::nullopt;
   return Joining::strokes;
 }
 

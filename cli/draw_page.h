@@ -14,19 +14,20 @@ namespace blackleaf::cli {
 /// How pictures are written.
 enum class PictureFormat { svg, pdf, png, hpgl, dxf, json };
 
-/// --format, --size, --pen-width, --order, --stats and --title, as typed.
+/// --format, --size, --order, --stats and --title, as typed.
 class PageArguments {
  public:
   void add_to(CLI::App& app);
 
   /// The format, from the suffix of the output or, for standard output, from --format. Throws Error(bad_argument).
   PictureFormat format(const std::string& output) const;
-  /// Checks the other options against each other and the format. Throws Error(bad_argument).
-  void check(PictureFormat format) const;
+  /// Checks the other options; `in_voxels` when the output has no page, and so no pens either (`pens`: an option for
+  /// them was given). Throws Error(bad_argument).
+  void check(bool in_voxels, bool pens) const;
 
   bool stats() const { return stats_; }
   const std::optional<std::string>& title() const { return title_; }
-  double pen_width() const { return pen_width_.value_or(PageOptions{}.pen_width_mm); }
+  const std::optional<std::string>& size() const { return size_; }
   /// The page for layers in voxels; a page of a named size is turned to suit them.
   PageOptions page_for(std::span<const Layer> layers) const;
   /// How lines are to be ordered and joined; none: left as they are.
@@ -34,7 +35,6 @@ class PageArguments {
 
  private:
   std::optional<std::string> format_, size_, order_, title_;
-  std::optional<double> pen_width_;
   bool stats_ = false;
 };
 

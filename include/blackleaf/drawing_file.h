@@ -16,8 +16,8 @@ std::vector<std::uint8_t> to_pdf(const Picture& picture);
 
 /// Writes .svg, .json, .png or .pdf by suffix. Atomic. Throws Error(io), and Error(bad_argument) for other suffixes.
 void write_picture(const Picture& picture, const std::filesystem::path& path, double dots_per_inch = 200);
-/// The same for a drawing on a page of its own; .json is in voxels then. Throws Error(bad_argument) for a page too small
-/// for its margins.
+/// The same for a drawing on a page of its own; .json is in voxels then. Throws Error(bad_argument) for a page too
+/// small for its margins.
 void write_drawing(const LineDrawing& drawing, const std::filesystem::path& path, const PageOptions& page = {});
 
 }  // namespace blackleaf

@@ -115,6 +115,7 @@ std::string to_svg(const LineDrawing& drawing, const PageOptions& page = {});
 /// JSON text: {"view": [x,y,z], "right": [..], "up": [..], "strokes": [[[u,v],[u,v]],...]}, voxel units, numbers that
 /// give the same doubles back. Throws Error(bad_argument) for points that are not finite.
 std::string to_json(const LineDrawing& drawing);
+std::string to_json(const Polylines& strokes, const View& view);
 /// The same for layers in voxels: {"view", "right", "up", "layers": [{"name": "..", "colour": "#rrggbb", "width": mm,
 /// "dashes": [mm,...], "strokes": [...]},...]}. A stroke is a polyline of two points or more.
 std::string to_json(std::span<const Layer> layers, const View& view);

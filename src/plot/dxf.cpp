@@ -40,14 +40,14 @@ void put(TextBuffer& out, int code, const Eigen::Vector2d& point) {
 // AutoCAD's colour numbers 1 to 9.
 std::int64_t colour_number(const PenColour& colour) {
   static constexpr std::array<PenColour, 9> kColours{{{255, 0, 0},
-                                                   {255, 255, 0},
-                                                   {0, 255, 0},
-                                                   {0, 255, 255},
-                                                   {0, 0, 255},
-                                                   {255, 0, 255},
-                                                   {0, 0, 0},
-                                                   {128, 128, 128},
-                                                   {192, 192, 192}}};
+                                                      {255, 255, 0},
+                                                      {0, 255, 0},
+                                                      {0, 255, 255},
+                                                      {0, 0, 255},
+                                                      {255, 0, 255},
+                                                      {0, 0, 0},
+                                                      {128, 128, 128},
+                                                      {192, 192, 192}}};
   const auto difference = [&](const PenColour& c) {
     const int r = colour.red - c.red, g = colour.green - c.green, b = colour.blue - c.blue;
     return r * r + g * g + b * b;

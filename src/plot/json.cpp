@@ -84,12 +84,14 @@ void put_layers(TextBuffer& out, std::span<const Layer> layers) {
 
 }  // namespace
 
-std::string to_json(const LineDrawing& drawing) {
-  TextBuffer out(80 * drawing.strokes.size() + 512);
+std::string to_json(const LineDrawing& drawing) { return to_json(polylines(drawing.strokes), drawing.view); }
+
+std::string to_json(const Polylines& strokes, const View& view) {
+  TextBuffer out(80 * strokes.size() + 512);
   out.put('{');
-  put_view(out, drawing.view);
+  put_view(out, view);
   out.put(",\n");
-  put_strokes(out, polylines(drawing.strokes));
+  put_strokes(out, strokes);
   out.put("}\n");
   return out.take();
 }

@@ -73,6 +73,59 @@ TEST_F(Pictures, PenOrderAndStats) {
   refused({"draw", "b.octree", "--view", "1,0,0", "-o", "q.hpgl", "--size", "2000x2000"}, "HP-GL reaches, 819.175 mm");
 }
 
+TEST_F(Pictures, Sheets) {
+  make_box("flat.octree", 5, {2, 3, 4}, {22, 9, 12});
+  for (const std::string angle : {"first", "third"}) {
+    const json sheet =
+        json::parse(done({"draw", "flat.octree", "--sheet", "--angle", angle, "-o", "-", "--format", "json"}).out);
+    EXPECT_EQ(sheet["page"], json::parse("[297,210]"));
+    ASSERT_EQ(sheet["views"].size(), 4u);
+    EXPECT_EQ(sheet["views"][0]["view"], json::parse("[0,-1,0]"));
+    EXPECT_EQ(sheet["views"][2]["name"], angle == "first" ? "left" : "right");
+    EXPECT_EQ(sheet["views"][3]["view"], json::parse("[1,-1,1]"));
+    EXPECT_EQ(sheet["source"], "flat.octree");
+    // A box shows four edges from each side and nine from a corner.
+    EXPECT_EQ(sheet["layers"][0]["name"], "visible");
+    EXPECT_EQ(sheet["layers"][0]["strokes"].size(), 3u * 4 + 9);
+  }
+  const std::string svg =
+      done({"draw", "flat.octree", "--sheet", "--scale", "2:1", "--size", "a3", "-o", "-", "--format", "svg"}).out;
+  EXPECT_NE(svg.find("width=\"420mm\" height=\"297mm\""), std::string::npos);
+  EXPECT_NE(svg.find("millimetres-per-voxel=\"2\""), std::string::npos);
+  EXPECT_NE(svg.find("inkscape:label=\"title block\""), std::string::npos);
+  for (const char* name : {"s.svg", "s.pdf", "s.png", "s.hpgl", "s.dxf"})
+    done({"draw", "flat.octree", "--sheet", "--title", "a box", "--date", "2026-11-22", "-o", name, "--stats"});
+  const std::vector<std::string> sheet{"draw", "flat.octree", "--sheet", "-o", "t.svg"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), sheet.begin(), sheet.end());
+    return more;
+  };
+  refused(with({"--view", "1,2,3"}), "--view");
+  refused(with({"--angle", "second"}), "--angle");
+  refused(with({"--scale", "2"}), "--scale");
+  refused(with({"--scale", "0:1"}), "--scale");
+  refused(with({"--scale", "1:nan"}), "--scale");
+  refused(with({"--scale", "100:1"}), "use a larger page or 5:1");
+  refused(with({"--size", "A6"}), "too small for a sheet");
+  refused({"draw", "flat.octree", "--view", "1,2,3", "--angle", "first", "-o", "t.svg"}, "--angle belongs to --sheet");
+  refused({"draw", "flat.octree", "--view", "1,2,3", "--scale", "1:1", "-o", "t.svg"}, "--scale belongs to --sheet");
+}
+
+TEST_F(Pictures, Pens) {
+  const auto svg = [&](const std::string& pen) {
+    return done({"draw", "b.octree", "--view", "1,2,3", "--pen", pen, "-o", "-", "--format", "svg"}).out;
+  };
+  EXPECT_NE(svg("#0a1").find("stroke=\"#00aa11\""), std::string::npos);
+  EXPECT_NE(svg("#12AB3c").find("stroke=\"#12ab3c\""), std::string::npos);
+  EXPECT_NE(
+      svg("red:0.7").find("stroke=\"#d55e00\" stroke-linecap=\"round\" stroke-linejoin=\"round\" stroke-width=\"0.7\""),
+      std::string::npos);
+  for (const char* pen : {"", "pink", "#12", "#12345g", "red:", "red:0", "red:-1", ":1", "red:1:2"})
+    refused({"draw", "b.octree", "--view", "1,2,3", "--pen", pen, "-o", "p.svg"}, "--pen");
+  refused({"draw", "b.octree", "--view", "1,2,3", "--pen", "red", "--pen", "blue", "-o", "p.svg"}, "--pen");
+  refused({"draw", "b.octree", "--view", "1,2,3", "--pen", "red", "-o", "p.json"}, "JSON");
+}
+
 TEST_F(Pictures, NothingToSee) {
   make_box("empty.octree", 3, {0, 0, 0}, {0, 0, 0});
   for (const char* name : {"e.svg", "e.pdf", "e.png", "e.hpgl", "e.dxf", "e.json"}) {
