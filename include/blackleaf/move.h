@@ -36,9 +36,9 @@ Octree move(const Octree& octree, const Motion& motion, Leaving leaving = Leavin
 
 /// All labels moved at once: every voxel takes the label that its centre comes from. A centre that comes from exactly
 /// between voxels, on a face, an edge or a corner, takes the largest of their labels; so any label wins over 0, and the
-/// voxels of all labels but 0 are those of the moved solid of all labels but 0. In other words: the solids of the labels
-/// are moved one by one, in increasing order, and each paints over what is there. The solid of all labels but 0 decides
-/// what leaves the universe. Exact, and the same for every thread count. O(runs * depth) of source and target.
+/// voxels of all labels but 0 are those of the moved solid of all labels but 0. In other words: the solids of the
+/// labels are moved one by one, in increasing order, and each paints over what is there. The solid of all labels but 0
+/// decides what leaves the universe. Exact, and the same for every thread count. O(runs * depth) of source and target.
 LabelMap move(const LabelMap& map, const Motion& motion, Leaving leaving = Leaving::error, const Work& work = {});
 
 }  // namespace blackleaf

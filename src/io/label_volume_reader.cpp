@@ -26,7 +26,6 @@
 namespace blackleaf {
 namespace {
 
-
 // One volume on its way from the file to the label map.
 class LabelVolumeJob {
  public:

@@ -153,10 +153,9 @@ TEST(Offset, LeavingSaysByHowMuchAndWhere) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::out_of_universe);
-    EXPECT_EQ(
-        std::string(error.what()),
-        "the grown solid leaves the universe: 1 voxel below x = 0, 3 voxels beyond z = 16; grow it by less, clip "
-        "it (--clip) or grow the universe (--grow)");
+    EXPECT_EQ(std::string(error.what()),
+              "the grown solid leaves the universe: 1 voxel below x = 0, 3 voxels beyond z = 16; grow it by less, clip "
+              "it (--clip) or grow the universe (--grow)");
   }
 }
 

@@ -89,8 +89,8 @@ TEST(Path, QuaternionsOfFewDigitsAreTaken) {
   EXPECT_NEAR(path.poses()[0].rotation.norm(), 1, 1e-15);
 }
 
-// The law of the bound: the way along the path, measured as a polygon of many corners, is never longer; for the farthest
-// corner of a box about an axis it is nearly as long.
+// The law of the bound: the way along the path, measured as a polygon of many corners, is never longer; for the
+// farthest corner of a box about an axis it is nearly as long.
 TEST(Path, MotionBoundHoldsTheWayOfEveryPoint) {
   std::mt19937 random(61);
   for (int trial = 0; trial < 60; ++trial) {
