@@ -16,12 +16,6 @@
 namespace blackleaf::cli {
 namespace {
 
-// What is drawn.
-struct Solids {
-  std::vector<std::string> names;
-  std::vector<Octree> octrees;
-};
-
 // A picture without a page, and with one.
 struct Result {
   std::optional<View> view;   // of a picture without a sheet
@@ -31,17 +25,15 @@ struct Result {
   std::optional<OrderedPicture> page;
 };
 
-// What of the solids is seen from one side, in voxels.
-std::vector<Layer> layers_of(const Solids& solids, const View& view, const PenArguments& pens, Result& result,
+// What is seen from one side, in voxels.
+std::vector<Layer> layers_of(const Octree& octree, const View& view, const PenArguments& pens, Result& result,
                              const Work& work) {
-  std::vector<SolidLines> lines(1);
-  lines[0].inner = draw(solids.octrees[0], view, work).strokes;
-  for (const SolidLines& solid : lines)
-    for (const std::vector<Stroke>* strokes : {&solid.outline, &solid.inner, &solid.hidden}) {
-      result.strokes += strokes->size();
-      for (const Stroke& stroke : *strokes) result.length += (stroke.to - stroke.from).norm();
-    }
-  return pens.layers(solids.names, std::move(lines));
+  const LineDrawing drawing = draw(octree, view, work);
+  result.strokes += drawing.strokes.size();
+  result.length += drawing.length();
+  std::vector<Layer> layers;
+  layers.push_back({"visible", pens.pen(), polylines(drawing.strokes)});
+  return layers;
 }
 
 void report(const Session& session, const std::string& output, const Result& result, bool stats) {
@@ -85,7 +77,7 @@ int run_draw(Session& session) {
   const PictureFormat format = page.format(output);
   const bool in_voxels = format == PictureFormat::json && !sheet.given();
   page.check(in_voxels, pens.given());
-  pens.check(1);
+  pens.check();
   sheet.check(page.size());
   Result result;
   if (!sheet.given()) {
@@ -99,20 +91,17 @@ int run_draw(Session& session) {
     throw Error(ErrorCode::bad_argument, "-o - and --json both want standard output", "write the picture to a file");
   if (output != "-") check_output(output);
 
-  Solids solids;
-  solids.octrees.push_back(read_solid(session, input, label));
-  solids.names.push_back(base_name(input));
-  const std::string source = solids.names[0];
+  const Octree octree = read_solid(session, input, label);
+  const std::string source = base_name(input);
   Picture picture = session.stage("draw", [&](const Work& work) {
     if (!sheet.given()) {
-      result.layers = layers_of(solids, *result.view, pens, result, work);
+      result.layers = layers_of(octree, *result.view, pens, result, work);
       return in_voxels ? Picture{} : lay_out(result.layers, *result.view, page.page_for(result.layers));
     }
-    const SheetOptions options =
-        sheet.options(page.size(), page.title().value_or(source), source, solids.octrees[0].frame());
+    const SheetOptions options = sheet.options(page.size(), page.title().value_or(source), source, octree.frame());
     std::array<std::vector<Layer>, 4> views;
     const std::array<View, 4> directions = sheet_views(options.angle);
-    for (std::size_t i = 0; i < views.size(); ++i) views[i] = layers_of(solids, directions[i], pens, result, work);
+    for (std::size_t i = 0; i < views.size(); ++i) views[i] = layers_of(octree, directions[i], pens, result, work);
     return engineering_sheet(views, options);
   });
   if (result.strokes == 0) session.warn("nothing is seen: the picture is empty");
@@ -127,8 +116,7 @@ int run_draw(Session& session) {
     if (!in_voxels) {
       text = text_of(result.page->picture, format);
     } else {
-      const bool plain = solids.octrees.size() == 1 && !pens.outline() && pens.hidden() == HiddenLines::none;
-      text = plain ? to_json(result.layers[0].lines, *result.view) : to_json(result.layers, *result.view);
+      text = to_json(result.layers[0].lines, *result.view);
     }
     if (output != "-") return detail::write_atomically(output, text);
     check_interrupt();

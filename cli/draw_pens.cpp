@@ -51,60 +51,12 @@ Pen parse_pen(const std::string& text, double width) {
 
 void PenArguments::add_to(CLI::App& app) {
   add_number(app, "--pen-width", pen_width_, true, "width of the lines in mm (default 0.25)");
-  app.add_option("--pen", pens_,
-                 "pen of the first file, the second ... (or of the labels in turn); a colour like #d55e00 or blue, "
-                 "perhaps with a width in mm; repeatable")
-      ->type_name("COLOUR[:MM]")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_text(app, "--pen", pen_, "COLOUR[:MM]", "a colour like #d55e00 or blue, perhaps with a width in mm");
 }
 
-void PenArguments::check(std::size_t solids) const {
-  static_cast<void>(hidden());
-  for (const std::string& text : pens_) static_cast<void>(parse_pen(text, 1));
-  if (pens_.size() > solids)
-    throw Error(ErrorCode::bad_argument, fmt::format("--pen is given {} times for {} solids", pens_.size(), solids),
-                "give one for each solid at most");
-}
-
-HiddenLines PenArguments::hidden() const {
-  if (!hidden_ || *hidden_ == "none") return HiddenLines::none;
-  if (*hidden_ == "dashed") return HiddenLines::dashed;
-  if (*hidden_ == "only") return HiddenLines::only;
-  throw Error(ErrorCode::bad_argument, fmt::format("--hidden is '{}', which is unknown", *hidden_),
-              "use dashed, none or only");
-}
-
-Pen PenArguments::pen(std::size_t solid, std::size_t solids) const {
+Pen PenArguments::pen() const {
   const double width = pen_width_.value_or(Pen{}.width_mm);
-  if (solid < pens_.size()) return parse_pen(pens_[solid], width);
-  return {solids == 1 ? PenColour{} : kColours[solid % kColours.size()].second, width, {}};
-}
-
-std::vector<Layer> PenArguments::layers(std::span<const std::string> names, std::vector<SolidLines> solids) const {
-  std::vector<Layer> result;
-  const auto add = [&](std::size_t solid, const char* kind, Pen pen, const std::vector<Stroke>& strokes) {
-    if (strokes.empty()) return;
-    const std::string name = solids.size() == 1 ? kind : fmt::format("{} {}", names[solid], kind);
-    result.push_back({name, std::move(pen), polylines(strokes)});
-  };
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    Pen thin = pen(i, solids.size());
-    if (hidden() == HiddenLines::dashed) {
-      // Dashes as ISO 128 has them, shorter than for drawings of parts, as edges of voxels are short.
-      thin.dashes_mm = {6 * thin.width_mm, 4 * thin.width_mm};
-      thin.width_mm *= 0.7;
-    }
-    add(i, "hidden", thin, solids[i].hidden);
-  }
-  for (std::size_t i = 0; i < solids.size(); ++i) add(i, "visible", pen(i, solids.size()), solids[i].inner);
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    Pen heavy = pen(i, solids.size());
-    heavy.width_mm = outline_width_.value_or(heavy.width_mm);
-    add(i, "outline", heavy, solids[i].outline);
-  }
-  if (result.empty()) result.push_back({"visible", pen(0, 1), {}});
-  return result;
+  return pen_ ? parse_pen(*pen_, width) : Pen{.width_mm = width};
 }
 
 }  // namespace blackleaf::cli
