@@ -144,6 +144,7 @@ int run_animate(Session& session) {
   const std::vector<double> times = frame_times(path, frames, fps);
   const Octree solid = read_solid(session, input, label);
   std::vector<Motion> way;
+  way.reserve(times.size());
   for (const double time : times) way.push_back(path.motion_at(time));
   // All frames are asked before the first is written.
   const RoomForMotions room =
