@@ -50,6 +50,7 @@ def demands():
     key = "translate/1024/t1"
     yield f"{key}: move by the same vector", lambda f, k=key: f.times(k, "move"), "at least", 3
     yield f"{key}: OpenVDB, copying and pruning", lambda f, k=key: f.times(k, "openvdb-copy"), "at least", 10
+    yield f"{key}: OpenVDB, GridTransformer", lambda f, k=key: f.times(k, "openvdb"), "at least", 80
     yield "memory/1024: OpenVDB", lambda f: f.times("memory/1024", "openvdb"), "at least", 4
     for key in ("combine", "combine-and", "combine-minus"):
         for who in ("openvdb-csg", "openvdb-csg-copy"):
