@@ -180,7 +180,7 @@ Octree read_beside(Session& session, const Octree& first, const std::string& fir
                    const Label& label, const std::string& remedy) {
   if (first_name == "-" && name == "-")
     throw Error(ErrorCode::bad_argument, "both octrees are - for standard input", "name a file for one of them");
-  const Octree next = read_solid(session, name, label);
+  Octree next = read_solid(session, name, label);
   if (first.depth() != next.depth())
     throw Error(ErrorCode::bad_argument,
                 fmt::format("'{}' has depth {} and '{}' has depth {}", first_name, first.depth(), name, next.depth()),
