@@ -55,6 +55,7 @@ int run_reproduce(Session& session) {
   if (folder.empty()) throw Error(ErrorCode::bad_argument, "the folder's name is empty", "give one after -o");
 
   std::vector<Exhibit> exhibits;
+  exhibits.reserve(kExhibits.size());
   for (const Maker& maker : kExhibits)
     exhibits.push_back(session.stage(maker.stage, [&](const Work& work) { return maker.make(work); }));
 

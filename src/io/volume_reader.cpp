@@ -21,7 +21,6 @@
 namespace blackleaf {
 namespace {
 
-using detail::Component;
 using detail::ImageInformation;
 
 void check_options(const VolumeOptions& options) {

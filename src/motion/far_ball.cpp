@@ -127,7 +127,7 @@ class Distances {
       first = std::min(first, brick.at[1]);
       last = std::max(last, brick.at[1] + 3);
     }
-    const auto count = static_cast<std::size_t>(last - first + 1);
+    const auto count = static_cast<std::size_t>(std::int64_t{last} - first + 1);
     rows_.assign(4 * count, {});
     for (const Brick& brick : bricks)
       for (std::size_t k = 0; k < 16; ++k)

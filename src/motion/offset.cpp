@@ -16,7 +16,6 @@ namespace blackleaf {
 namespace {
 
 using detail::part_of;
-using detail::Placed;
 
 // No two voxels of a universe are so far apart: sqrt(3) 2^20 < 2^21.
 constexpr double kAll = std::int64_t{1} << 21;

@@ -127,7 +127,8 @@ std::vector<double> Path::times(const Box& box, double step) const {
                   "the path would have more than " + std::to_string(kMostTimes) + " steps, the most there may be",
                   "take longer steps or a part of the path");
     const double first = poses_[segment].time, length = poses_[segment + 1].time - first;
-    for (double i = 0; i < parts; ++i) times.push_back(first + length * (i / parts));
+    const auto count = static_cast<std::size_t>(parts);
+    for (std::size_t i = 0; i < count; ++i) times.push_back(first + length * (static_cast<double>(i) / parts));
   }
   times.push_back(end());
   return times;

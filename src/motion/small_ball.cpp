@@ -41,7 +41,7 @@ class Window {
   const std::uint64_t* plane(int z) const { return &rows_[index(z)][kMargin]; }
 
  private:
-  std::size_t index(int at) const { return static_cast<std::size_t>(at + first_); }
+  std::size_t index(int at) const { return static_cast<std::size_t>(std::int64_t{at} + first_); }
 
   void add(const Node& node, const VoxelBox& box) {
     for (std::size_t i = 0; i < 3; ++i)
@@ -122,7 +122,8 @@ Tile SmallBall::grow(const Sites& sites, const Cube& cube) const {
       int w = reach_;
       for (int dy = 0; dy <= half[0]; ++dy) {
         while (half[static_cast<std::size_t>(w)] < dy) --w;
-        const std::uint32_t* const up = &spread[static_cast<std::size_t>(w)][static_cast<std::size_t>(reach_ + dy)];
+        const std::uint32_t* const up =
+            &spread[static_cast<std::size_t>(w)][static_cast<std::size_t>(std::int64_t{reach_} + dy)];
         const std::uint32_t* const down = &spread[static_cast<std::size_t>(w)][static_cast<std::size_t>(reach_ - dy)];
         for (std::size_t y = 0; y < Tile::kSide; ++y) disc[y] |= up[y] | down[y];
       }
