@@ -4,6 +4,8 @@
 
 #include <cassert>
 
+#include "plot/markup.h"
+
 namespace blackleaf::cli {
 namespace {
 
@@ -26,33 +28,16 @@ std::string csv_field(const std::string& text) {
 
 }  // namespace
 
-std::string html_text(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
-
 std::string paragraph(const std::string& html) { return "<p>" + html + "</p>\n"; }
 
 std::string Table::html() const {
-  std::string text = "<table><caption>" + html_text(caption) + "</caption>\n<tr>";
-  for (const std::string& column : columns) text += "<th>" + html_text(column) + "</th>";
+  std::string text = "<table><caption>" + detail::markup_text(caption) + "</caption>\n<tr>";
+  for (const std::string& column : columns) text += "<th>" + detail::markup_text(column) + "</th>";
   text += "</tr>\n";
   for (const auto& row : rows) {
     assert(row.size() == columns.size());
     text += "<tr>";
-    for (const std::string& entry : row) text += "<td>" + html_text(entry) + "</td>";
+    for (const std::string& entry : row) text += "<td>" + detail::markup_text(entry) + "</td>";
     text += "</tr>\n";
   }
   return text + "</table>\n";
@@ -80,12 +65,12 @@ std::string html_page(const std::vector<Exhibit>& exhibits) {
                     ". A dash stands where the print cannot be read or says nothing.");
   text += "<nav>";
   for (const Exhibit& exhibit : exhibits)
-    text +=
-        fmt::format("<a href=\"#{}\">{}</a>", exhibit.id, html_text(exhibit.title.substr(0, exhibit.title.find(':'))));
+    text += fmt::format("<a href=\"#{}\">{}</a>", exhibit.id,
+                        detail::markup_text(exhibit.title.substr(0, exhibit.title.find(':'))));
   text += "</nav>\n";
   for (const Exhibit& exhibit : exhibits)
-    text += fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", exhibit.id, html_text(exhibit.title),
-                        exhibit.body);
+    text += fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", exhibit.id,
+                        detail::markup_text(exhibit.title), exhibit.body);
   return text + "</body></html>\n";
 }
 

@@ -50,8 +50,6 @@ Exhibit an84_figure_4(const Work& work);
 /// The page of all exhibits: one HTML file that needs no other.
 std::string html_page(const std::vector<Exhibit>& exhibits);
 
-/// Text with &, <, > and " written so that HTML shows them.
-std::string html_text(const std::string& text);
 /// <p>text</p>, of HTML.
 std::string paragraph(const std::string& html);
 

@@ -1,8 +1,8 @@
 // Solid angles of triangles, in turns (units of 4 pi), with bounds of their errors.
 #pragma once
 
-#include "double_double.h"
 #include "grid_mesh.h"
+#include "octree/double_double.h"
 
 namespace blackleaf::detail {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "blackleaf/motion.h"
-#include "double_double.h"
+#include "octree/double_double.h"
 
 namespace blackleaf::detail {
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "blackleaf/picture.h"
+#include "plot/markup.h"
 #include "plot/text_buffer.h"
 #include "plot/utf8.h"
 
@@ -12,20 +13,9 @@ using detail::TextBuffer;
 
 // Text as XML may hold it: markup escaped, control characters dropped.
 std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : detail::valid_utf8(text)) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7F)
-      result += c;
-  }
-  return result;
+  std::string result = detail::valid_utf8(text);
+  std::erase_if(result, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  return detail::markup_text(result);
 }
 
 void put_header(TextBuffer& out, const Picture& picture) {

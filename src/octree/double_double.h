@@ -1,7 +1,8 @@
 // DoubleDouble: a number as the unevaluated sum of two doubles, about 106 bits (T. J. Dekker, Numer. Math. 18, 1971).
 //
 // Motions are composed in it, so that what thousands of compositions lose stays far below the grid of 2^-38 to which a
-// motion is rounded in the end. Relative error of a sum of like signs, a product or a quotient: below 2^-102; needs
+// motion is rounded in the end; so are solid angles where double cannot decide. Relative error of a sum of like signs,
+// a product or a quotient: below 2^-102, of a sum of numbers of opposite sign relative to the larger of them; needs
 // round-to-nearest and no contraction.
 #pragma once
 
@@ -18,6 +19,12 @@ struct DoubleDouble {
 
   explicit operator double() const { return high; }
 
+  /// A whole number below 2^126 in size.
+  template <class Whole>
+  static DoubleDouble of(Whole value) {
+    const auto high = static_cast<double>(value);
+    return sum(high, static_cast<double>(value - static_cast<Whole>(high)));
+  }
   /// a + b without error. Requires: |a| >= |b|, or a is 0.
   static DoubleDouble quick_sum(double a, double b) {
     const double sum = a + b;
@@ -41,8 +48,8 @@ inline DoubleDouble operator-(const DoubleDouble& a) { return {-a.high, -a.low};
 
 inline DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble high = DoubleDouble::sum(a.high, b.high), low = DoubleDouble::sum(a.low, b.low);
-  const DoubleDouble part = DoubleDouble::quick_sum(high.high, high.low + low.high);
-  return DoubleDouble::quick_sum(part.high, part.low + low.low);
+  const DoubleDouble part = DoubleDouble::sum(high.high, high.low + low.high);
+  return DoubleDouble::sum(part.high, part.low + low.low);
 }
 
 inline DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
@@ -58,6 +65,13 @@ inline DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
   const double second = rest.high / b.high;
   const double third = (rest - b * second).high / b.high;
   return DoubleDouble::quick_sum(first, second) + third;
+}
+
+/// Requires: a > 0.
+inline DoubleDouble square_root(const DoubleDouble& a) {
+  const double root = std::sqrt(a.high);
+  const DoubleDouble rest = a - DoubleDouble::product(root, root);
+  return DoubleDouble::sum(root, rest.high / (2 * root));
 }
 
 /// 1 / sqrt(a): one Newton step from double precision. Requires: a is positive and finite.
