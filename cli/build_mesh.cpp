@@ -1,10 +1,12 @@
 // blackleaf build: triangle meshes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "blackleaf/mesh.h"
@@ -84,6 +86,29 @@ void refuse_if_missed(const std::string& input, const TriangleMesh& mesh, const 
               "use smaller voxels or a greater depth, or take every voxel that it touches (--rule touched)");
 }
 
+// Work and memory follow the surface. Where even a few bytes for every voxel on it are more than the machine has, that
+// is said before it is tried.
+void refuse_if_too_fine(const std::string& input, const TriangleMesh& mesh, const MeshPlacement& placement) {
+  constexpr double kBytes = 16;  // a voxel on the surface, at the least
+  const Eigen::Matrix3d to_voxels = placement.frame.axes.inverse();
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3d a = to_voxels * (mesh.vertices[t[1]] - mesh.vertices[t[0]]);
+    const Eigen::Vector3d b = to_voxels * (mesh.vertices[t[2]] - mesh.vertices[t[0]]);
+    area += a.cross(b).norm() / 2;
+  }
+  // What lies outside the universe costs nothing, so no more than all its voxels on every side are counted.
+  const double side = std::ldexp(1.0, placement.depth);
+  area = std::min(area, side * side * side);
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (!(area * kBytes > memory)) return;
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: its surface is {:.2g} voxels large, which takes more than the {:.0f} GB of memory that "
+                          "there are",
+                          input, area, memory / 1e9),
+              "use larger voxels or a smaller depth");
+}
+
 template <class Value>
 Value choice(const char* option, const std::string& given,
              std::initializer_list<std::pair<const char*, Value>> values) {
@@ -142,6 +167,7 @@ Octree build_mesh(Session& session, const BuildOptions& o, const std::optional<O
                        [&] { return place_by_fraction(mesh, o.depth.value_or(kMeshDepth), o.fit.value_or(kMeshFit)); });
     facts["fit"] = o.fit.value_or(kMeshFit);
   }
+  if (!like) refuse_if_too_fine(o.input, mesh, placement);
   facts["depth"] = placement.depth;
   facts["rule"] = rule;
   if (o.inside) facts["inside"] = *o.inside;

@@ -32,33 +32,29 @@ struct VoxelBox {
   }
 };
 
-/// Squared distances of voxel centres, which stay below 2^50 for coordinates below 2^23:
-/// the least from a voxel of `a` to one of `b`;
-inline std::int64_t least_squared(const VoxelBox& a, const VoxelBox& b) {
+/// The square of the length of the vector with component(axis), an int32, on each axis: below 2^50 for differences of
+/// coordinates below 2^23.
+template <class Component>
+std::int64_t squared_length(Component component) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t gap = std::max({0, b.low[i] - a.high[i], a.low[i] - b.high[i]});
-    sum += gap * gap;
+    const std::int64_t along = component(i);
+    sum += along * along;
   }
   return sum;
+}
+
+/// Squared distances of voxel centres: the least from a voxel of `a` to one of `b`;
+inline std::int64_t least_squared(const VoxelBox& a, const VoxelBox& b) {
+  return squared_length([&](std::size_t i) { return std::max({0, b.low[i] - a.high[i], a.low[i] - b.high[i]}); });
 }
 /// the most from a voxel of `a` to the voxel of `b` that is nearest to it;
 inline std::int64_t nearest_squared(const VoxelBox& a, const VoxelBox& b) {
-  std::int64_t sum = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t reach = std::max({0, b.low[i] - a.low[i], a.high[i] - b.high[i]});
-    sum += reach * reach;
-  }
-  return sum;
+  return squared_length([&](std::size_t i) { return std::max({0, b.low[i] - a.low[i], a.high[i] - b.high[i]}); });
 }
 /// the most from a voxel of `a` to one of `b`.
 inline std::int64_t most_squared(const VoxelBox& a, const VoxelBox& b) {
-  std::int64_t sum = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t reach = std::max(a.high[i] - b.low[i], b.high[i] - a.low[i]);
-    sum += reach * reach;
-  }
-  return sum;
+  return squared_length([&](std::size_t i) { return std::max(a.high[i] - b.low[i], b.high[i] - a.low[i]); });
 }
 
 /// A node of the source that is not white, and where it lies in the target's coordinates; or a black box.

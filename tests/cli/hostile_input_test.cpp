@@ -205,6 +205,8 @@ TEST_F(HostileInput, VoxelsFarTooSmall) {
   refused_build("s.stl", "use voxels of side 0.1875 or more, or a greater depth",
                 {"--voxel-size", "0.1", "--depth", "4"});
   done({"build", "s.stl", "-o", "o.octree", "--voxel-size", "0.1875", "--depth", "4"});
+  // The universe is deep enough, and no machine holds such a surface.
+  refused_build("s.stl", "its surface is 1.7e+12 voxels large, which takes more than", {"--voxel-size", "2.862e-6"});
   write("a.xyz", "0 0 0\n3 1 1\n");
   for (const char* size : {"1e-9", "1e-300", "2.86e-6"})
     refused_build("a.xyz", "use voxels of side 2.862e-06 or more", {"--voxel-size", size});
