@@ -95,13 +95,13 @@ void ours_moved(benchmark::State& state, int depth) {
       const Eigen::Vector3d direction = random_direction(random);
       const auto at = [&](double t) { return Motion::translation(t * direction) * turn; };
       const double touch =
-          contact(0, 2.0 * octree.side(), [&](double t) { return interferes_exactly(octree, octree, at(t)); });
+          contact(0, 2.0 * octree.side(), [&](double t) { return interferes(octree, octree, at(t), Meaning::exact); });
       result.push_back(at(touch * std::uniform_real_distribution<double>(0.9, 1.1)(random)));
     }
     return result;
   }();
   for (auto _ : state)
-    for (const Motion& pose : poses) benchmark::DoNotOptimize(interferes_exactly(octree, octree, pose));
+    for (const Motion& pose : poses) benchmark::DoNotOptimize(interferes(octree, octree, pose, Meaning::exact));
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * kPoses);
 }
 

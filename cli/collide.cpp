@@ -79,7 +79,7 @@ int run_collide(Session& session) {
   Answer answer;
   if (exact) {
     const Motion motion = motion_options.motion(b);
-    answer.interferes = session.stage("collide", [&](const Work&) { return interferes_exactly(a, b, motion); });
+    answer.interferes = session.stage("collide", [&](const Work&) { return interferes(a, b, motion, Meaning::exact); });
   } else {
     const Octree target = motion_options.given() ? moved(session, b, motion_options.motion(b), second_name) : b;
     session.stage("collide", [&](const Work&) {

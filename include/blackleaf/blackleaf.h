@@ -28,6 +28,7 @@
 #include "blackleaf/picture.h"
 #include "blackleaf/points.h"
 #include "blackleaf/points_file.h"
+#include "blackleaf/prepared_solid.h"
 #include "blackleaf/runs.h"
 #include "blackleaf/runs_file.h"
 #include "blackleaf/set_operations.h"

@@ -7,6 +7,7 @@
 
 #include "blackleaf/motion.h"
 #include "blackleaf/octree.h"
+#include "blackleaf/prepared_solid.h"
 
 namespace blackleaf {
 
@@ -18,10 +19,18 @@ bool interferes(const Octree& a, const Octree& b);
 /// Voxels black in both, the volume of a and b. Throws as above. O(min of the words).
 std::uint64_t overlap_volume(const Octree& a, const Octree& b);
 
-/// True iff the interior of `a` and the interior of the exact moved solid of `b` share a point: tilted cubes, no
-/// rounding but that of the motion itself (FixedMotion); decided by separating axes in 128-bit integers. Nothing is
-/// voxelised, and leaving the universe is no error. Throws as above. O(pairs of nodes near contact).
-bool interferes_exactly(const Octree& a, const Octree& b, const Motion& motion_of_b);
+/// What a moved solid is taken for.
+enum class Meaning {
+  voxelised,  // the voxels that `move` makes of it; what is outside the universe does not count
+  exact,      // its cubes, tilted, wherever they are: no rounding but that of the motion itself (FixedMotion)
+};
+
+/// True iff the interior of `a` and that of `b`, moved, share a point. Nothing is moved to find out. Voxelised it is
+/// interferes(a, move(b, motion_of_b, Leaving::clip)), bit for bit; exact it is decided by separating axes in integers.
+/// Touching is not interference. Leaving the universe is no error. Throws as above. O(pairs of nodes near contact).
+bool interferes(const Octree& a, const Octree& b, const Motion& motion_of_b, Meaning meaning);
+/// The same answer, sooner: for many questions about the same solids.
+bool interferes(const PreparedSolid& a, const PreparedSolid& b, const Motion& motion_of_b, Meaning meaning);
 
 /// Two nearest points of two solids.
 struct Distance {
