@@ -31,6 +31,7 @@
 #include "blackleaf/prepared_solid.h"
 #include "blackleaf/runs.h"
 #include "blackleaf/runs_file.h"
+#include "blackleaf/scene.h"
 #include "blackleaf/set_operations.h"
 #include "blackleaf/sheet.h"
 #include "blackleaf/silhouettes.h"

@@ -1,10 +1,9 @@
-#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "blackleaf/drawing.h"
+#include "edge_tasks.h"
 #include "feature_edges.h"
-#include "octree/corner_walk.h"
 #include "octree/parallel.h"
 #include "strokes.h"
 #include "visibility.h"
@@ -12,50 +11,16 @@
 namespace blackleaf {
 namespace {
 
-using detail::Around;
 using detail::EdgeFamily;
+using detail::EdgeTask;
 using detail::Piece;
 using Families = std::array<EdgeFamily, 3>;
 using Pieces = std::array<std::vector<Piece>, 3>;  // by line class
 
-constexpr int kTaskLevels = 4;  // tasks are corner cubes this far below the root: enough for any number of cores
-
 struct Task {
-  Cube cube;
-  Around around;
+  EdgeTask edges;
   Pieces pieces;
 };
-
-// Cuts the corner walk (corner_walk.h) into tasks: corner cubes of `level`, or larger ones that need no cutting.
-void cut(const Around& around, const Cube& cube, int level, std::vector<Task>& tasks) {
-  const auto is_gray = [](const Node& node) { return node.is_gray(); };
-  const auto same = [&](const Node& node) { return node.colour() == around[0].colour(); };
-  const bool uniform = std::none_of(around.begin(), around.end(), is_gray);
-  if (uniform && std::all_of(around.begin(), around.end(), same)) return;
-  if (uniform || cube.level <= level) {
-    tasks.push_back({cube, around, {}});
-    return;
-  }
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    Around below;
-    for (unsigned i = 0; i < 8; ++i) below[i] = around[octant | i].child(static_cast<int>(~(octant ^ i) & 7));
-    cut(below, cube.child(static_cast<int>(octant)), level, tasks);
-  }
-}
-
-std::vector<Task> cut(const Octree& octree) {
-  const Node root = detail::brick_level_root(octree), white = Node::uniform(root.level(), Colour::white);
-  const std::int32_t side = std::int32_t{1} << root.level();
-  std::vector<Task> tasks;
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    Around around;
-    around.fill(white);
-    around[~octant & 7] = root;
-    const Cube cube{octant & 1 ? side : 0, octant & 2 ? side : 0, octant & 4 ? side : 0, root.level()};
-    cut(around, cube, std::max(2, root.level() - kTaskLevels), tasks);
-  }
-  return tasks;
-}
 
 // Finds the feature edges of one task and keeps what is visible of them.
 class Drawer {
@@ -71,7 +36,7 @@ class Drawer {
   void run(Task& task) {
     pieces_ = &task.pieces;
     detail::FeatureEdges<Drawer> edges(families_, *this);
-    detail::corner_walk(task.around, task.cube, edges);
+    detail::corner_walk(task.edges.around, task.edges.cube, edges);
   }
 
   void operator()(unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
@@ -107,7 +72,8 @@ Pieces gather(std::vector<Task>& tasks, const Work& work) {
 LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   const detail::Direction& d = view.direction();
   const Families families = {EdgeFamily(0, d), EdgeFamily(1, d), EdgeFamily(2, d)};
-  std::vector<Task> tasks = cut(octree);
+  std::vector<Task> tasks;
+  for (const EdgeTask& edges : detail::edge_tasks(octree)) tasks.push_back({edges, {}});
   detail::for_each_index(tasks.size(), work, [&](std::size_t i) { Drawer(octree, families).run(tasks[i]); });
   const Pieces pieces = gather(tasks, work);
   LineDrawing drawing{view, {}};

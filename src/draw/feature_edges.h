@@ -52,12 +52,31 @@ constexpr std::uint64_t candidates(const EdgeFamily& family, std::uint64_t A, st
   return feature & ~(family.d_b > 0 ? (family.d_c > 0 ? A : C) : (family.d_c > 0 ? B : D));
 }
 
-/// Visitor for corner_walk. Calls sink(family index, a0, a1, b, c) for runs [a0, a1] of candidate edges, each edge
-/// once.
+/// Which feature edges are wanted.
+enum class EdgeChoice {
+  candidates,           // those that can add something to the picture of this solid alone
+  not_blocked_at_once,  // those that this solid does not hide from the first step on
+  all,
+};
+
+/// Bits of the edges of a choice. Beside another solid, whose lines have another pen, an edge along whose rays there is
+/// black on one side only is wanted too.
+constexpr std::uint64_t chosen(EdgeChoice choice, const EdgeFamily& family, std::uint64_t A, std::uint64_t B,
+                               std::uint64_t C, std::uint64_t D) {
+  if (choice == EdgeChoice::candidates) return candidates(family, A, B, C, D);
+  const std::uint64_t feature = ((A ^ B) | (C ^ D)) & ((A ^ C) | (B ^ D));
+  if (choice == EdgeChoice::all) return feature;
+  if (family.mode == EdgeFamily::Mode::in_plane) return feature & ~(family.d_c > 0 ? A & B : C & D);
+  return candidates(family, A, B, C, D);
+}
+
+/// Visitor for corner_walk. Calls sink(family index, a0, a1, b, c) for runs [a0, a1] of the chosen edges, each edge
+/// once; not for edges seen end-on.
 template <class Sink>
 class FeatureEdges {
  public:
-  FeatureEdges(const std::array<EdgeFamily, 3>& families, Sink& sink) : families_(families), sink_(sink) {}
+  FeatureEdges(const std::array<EdgeFamily, 3>& families, Sink& sink, EdgeChoice choice = EdgeChoice::candidates)
+      : families_(families), sink_(sink), choice_(choice) {}
 
   void uniform(const Cube& cube, const Around& around) {
     const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};
@@ -66,7 +85,7 @@ class FeatureEdges {
       const EdgeFamily& f = families_[axis];
       if (f.mode == EdgeFamily::Mode::end_on) continue;
       const unsigned b = 1u << f.b, c = 1u << f.c;
-      if (candidates(f, bits(7), bits(7 - b), bits(7 - c), bits(7 - b - c)))
+      if (chosen(choice_, f, bits(7), bits(7 - b), bits(7 - c), bits(7 - b - c)))
         sink_(axis, corner[f.a], corner[f.a] + cube.side(), corner[f.b], corner[f.c]);
     }
   }
@@ -80,7 +99,7 @@ class FeatureEdges {
       const std::uint64_t B = moved_up(A, around[7 - b].brick(), f.b);
       const std::uint64_t C = moved_up(A, low_c, f.c);
       const std::uint64_t D = moved_up(B, moved_up(low_c, around[7 - b - c].brick(), f.b), f.c);
-      const std::uint64_t edges = candidates(f, A, B, C, D);
+      const std::uint64_t edges = chosen(choice_, f, A, B, C, D);
       if (edges) runs(axis, cube, edges);
     }
   }
@@ -102,6 +121,7 @@ class FeatureEdges {
 
   const std::array<EdgeFamily, 3>& families_;
   Sink& sink_;
+  EdgeChoice choice_;
 };
 
 }  // namespace blackleaf::detail

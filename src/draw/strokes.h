@@ -1,12 +1,51 @@
 // Strokes: pieces of picture lines united exactly and turned into points of the picture.
 #pragma once
 
+#include <cstdlib>
 #include <vector>
 
 #include "blackleaf/drawing.h"
 #include "edge_family.h"
+#include "screen.h"
+#include "wide.h"
 
 namespace blackleaf::detail {
+
+/// Positions of one line class as points of the picture. The point of space that stands for (key, position) has
+/// coordinate 0 along one axis and, over the common denominator `denominator`, whole coordinates along the others:
+///   general:  a: position, b: key |d_b| sgn(d_c), over D = |d_b d_c|                      (below 2^61)
+///   in_plane: i: position sgn(d_j), b: key |d_j|, over |d_j|, with position = x_i d_j - x_j d_i  (below 2^42)
+/// Times U and V (screen.h, below 2^42) and summed, 128 bits hold them exactly; one rounding each makes them doubles.
+class PictureLines {
+ public:
+  PictureLines(const EdgeFamily& family, const View& view) : screen_(view.direction()) {
+    const Direction& d = view.direction();
+    key_axis_ = family.b;
+    position_axis_ = family.line_class;
+    if (family.mode == EdgeFamily::Mode::general) {
+      denominator_ = family.scale;
+      key_factor_ = std::abs(family.d_b) * EdgeFamily::sign(family.d_c);
+    } else {
+      const std::int64_t d_j = d[family.line_class == family.a ? family.c : family.a];
+      denominator_ = key_factor_ = std::abs(d_j);
+      position_factor_ = EdgeFamily::sign(d_j);
+    }
+  }
+
+  Eigen::Vector2d point(std::int64_t key, std::int64_t position) const {
+    const Wide along = Wide{position} * position_factor_, across = Wide{key} * key_factor_;
+    const auto whole = [&](const std::array<std::int64_t, 3>& axis) {
+      return static_cast<double>(along * axis[position_axis_] + across * axis[key_axis_]);
+    };
+    const auto denominator = static_cast<double>(denominator_);
+    return {whole(screen_.u) / denominator / screen_.u_norm, whole(screen_.v) / denominator / screen_.v_norm};
+  }
+
+ private:
+  Screen screen_;
+  unsigned key_axis_, position_axis_;
+  std::int64_t denominator_, key_factor_, position_factor_ = 1;
+};
 
 /// Unites pieces that overlap or touch and appends one stroke for each maximal piece, in order of (key, low).
 /// Requires: `pieces` is sorted and belongs to the family's line class.

@@ -23,22 +23,29 @@ VisibilityWalk::VisibilityWalk(const Octree& octree, const EdgeFamily& family)
     levels_[static_cast<std::size_t>(level)] = octree.words(level).data();
 }
 
-const std::vector<Interval>& VisibilityWalk::visible(std::int64_t a0, std::int64_t a1, std::int64_t at_b,
-                                                     std::int64_t at_c) {
+const std::vector<Interval>& VisibilityWalk::visible(const Interval& run, std::int64_t at_b, std::int64_t at_c) {
   const EdgeFamily& f = family_;
-  visible_.reset(a0 * f.scale, a1 * f.scale);
-  // In a universe of one colour every ray that is not blocked at once leaves the solid at once.
-  if (!root_.is_gray()) return visible_.intervals();
+  visible_.reset(run.low, run.high);
+  if (root_.is_white()) return visible_.intervals();
   const std::int64_t side = std::int64_t{1} << root_.level();
   const std::int64_t near_c = (f.d_c > 0 ? -at_c : at_c - side) * time_c_;
-  if (f.mode == EdgeFamily::Mode::general) {
-    const std::int64_t near_b = (f.d_b > 0 ? -at_b : at_b - side) * time_b_;
-    if (root_.level() == 2)
-      descend<Kind::brick>(2, root_.word(), 0, near_b, near_c);
-    else
-      descend<Kind::node>(root_.level(), root_.word(), 0, near_b, near_c);
-  } else if (at_b > 0 && at_b < side) {  // on the universe's wall one side is white: nothing blocks
+  const bool general = f.mode == EdgeFamily::Mode::general;
+  const std::int64_t near_b = !general ? near_c : (f.d_b > 0 ? -at_b : at_b - side) * time_b_;
+  // Rays on the universe's wall have white on one side: nothing blocks.
+  if (!general && (at_b <= 0 || at_b >= side)) return visible_.intervals();
+  if (root_.is_black()) {
+    const std::int64_t enter = std::max({std::int64_t{0}, near_b, near_c});
+    const std::int64_t leave_b = general ? near_b + side * time_b_ : stop_;
+    const std::int64_t leave = std::min({stop_, leave_b, near_c + side * time_c_});
+    if (enter >= leave) return visible_.intervals();
+    const Interval hides = hidden(0, f.scale << root_.level(), enter, leave);
+    if (visible_.meets(hides.low, hides.high)) visible_.subtract(hides.low, hides.high);
+  } else if (!general) {
     descend_in_plane(root_, root_, at_b, 0, near_c);
+  } else if (root_.level() == 2) {
+    descend<Kind::brick>(2, root_.word(), 0, near_b, near_c);
+  } else {
+    descend<Kind::node>(root_.level(), root_.word(), 0, near_b, near_c);
   }
   return visible_.intervals();
 }
@@ -84,7 +91,7 @@ bool VisibilityWalk::descend(int level, std::uint64_t word, std::int64_t along, 
     const std::int64_t enter_b = quadrant & 1 ? near_b + time_b : near_b;
     const std::int64_t enter_c = quadrant & 2 ? near_c + time_c : near_c;
     const std::int64_t enter = std::max({std::int64_t{0}, enter_b, enter_c});
-    const std::int64_t leave = std::min(enter_b + time_b, enter_c + time_c);
+    const std::int64_t leave = std::min({enter_b + time_b, enter_c + time_c, stop_});
     if (enter >= leave) continue;
     for (unsigned upper = 0; upper < 2; ++upper) {
       const unsigned octant = octants_[2 * quadrant + upper];
@@ -114,8 +121,8 @@ bool VisibilityWalk::descend_in_plane(const Node& below, const Node& above, std:
   const unsigned low_b = static_cast<unsigned>((at_b - 1) >> level & 1) << family_.b;
   const unsigned high_b = static_cast<unsigned>(at_b >> level & 1) << family_.b;
   for (unsigned far = 0; far < 2; ++far) {
-    const std::int64_t enter_c = far ? near_c + time_c : near_c, leave = enter_c + time_c;
-    if (leave <= 0) continue;
+    const std::int64_t enter_c = far ? near_c + time_c : near_c, leave = std::min(enter_c + time_c, stop_);
+    if (leave <= std::max(std::int64_t{0}, enter_c)) continue;
     const unsigned bits = (near_ & bit_c) ^ (far ? bit_c : 0);
     for (unsigned upper = 0; upper < 2; ++upper) {
       const std::int64_t child_along = upper ? along + length : along;

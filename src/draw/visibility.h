@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "blackleaf/octree.h"
@@ -18,8 +19,15 @@ class VisibilityWalk {
   VisibilityWalk(const Octree& octree, const EdgeFamily& family);
 
   /// The visible intervals of the run of edges [a0, a1] x {at_b} x {at_c}, closed, in the family's units; valid until
-  /// the next call. Requires: the run's rays are not blocked from their first step on (see feature_edges.h).
-  const std::vector<Interval>& visible(std::int64_t a0, std::int64_t a1, std::int64_t at_b, std::int64_t at_c);
+  /// the next call.
+  const std::vector<Interval>& visible(std::int64_t a0, std::int64_t a1, std::int64_t at_b, std::int64_t at_c) {
+    return visible({a0 * family_.scale, a1 * family_.scale}, at_b, at_c);
+  }
+  /// The same for any part of such a run, in the family's units.
+  const std::vector<Interval>& visible(const Interval& run, std::int64_t at_b, std::int64_t at_c);
+
+  /// What rays meet at this time tau or later does not hide. Requires: tau >= 0.
+  void stop_at(std::int64_t tau) { stop_ = tau; }
 
  private:
   enum class Kind { node, brick, byte };
@@ -39,6 +47,7 @@ class VisibilityWalk {
   std::int64_t time_b_, time_c_;       // tau that a ray needs to cross one voxel along b, along c
   unsigned near_;                      // octant label bits of the children that a ray meets first, along b and c
   std::array<unsigned, 8> octants_{};  // children in the order of visiting: nearest first, along a upward
+  std::int64_t stop_ = std::numeric_limits<std::int64_t>::max();
   VisibleSet visible_;
 };
 

@@ -11,21 +11,24 @@ namespace blackleaf::detail {
 
 /// Disjoint closed intervals of positive length in increasing order. Taking away an open interval can leave single
 /// points; they are dropped, for the drawing has no strokes of zero length.
-class VisibleSet {
+template <class Interval>
+class BasicVisibleSet {
+  using Position = decltype(Interval::low);
+
  public:
   /// Requires: low < high.
-  void reset(std::int64_t low, std::int64_t high) { intervals_.assign(1, {low, high}); }
+  void reset(Position low, Position high) { intervals_.assign(1, {low, high}); }
 
   const std::vector<Interval>& intervals() const { return intervals_; }
 
   /// Whether (low, high) meets the set in more than nothing. O(log intervals).
-  bool meets(std::int64_t low, std::int64_t high) const {
+  bool meets(Position low, Position high) const {
     if (intervals_.empty() || high <= intervals_.front().low || low >= intervals_.back().high) return false;
     return intervals_.size() == 1 || first_above(low)->low < high;
   }
 
   /// Takes (low, high) away; true iff nothing is left. Requires: meets(low, high).
-  bool subtract(std::int64_t low, std::int64_t high) {
+  bool subtract(Position low, Position high) {
     const auto first = intervals_.begin() + (first_above(low) - intervals_.cbegin());
     auto last = first;  // first one that begins at or above `high`
     while (last != intervals_.end() && last->low < high) ++last;
@@ -45,11 +48,12 @@ class VisibleSet {
 
  private:
   // The first interval that ends above `low`. Requires: there is one.
-  std::vector<Interval>::const_iterator first_above(std::int64_t low) const {
+  typename std::vector<Interval>::const_iterator first_above(Position low) const {
     return std::partition_point(intervals_.begin(), intervals_.end(), [&](const Interval& i) { return i.high <= low; });
   }
 
   std::vector<Interval> intervals_;
 };
+using VisibleSet = BasicVisibleSet<Interval>;
 
 }  // namespace blackleaf::detail

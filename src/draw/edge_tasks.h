@@ -1,0 +1,51 @@
+// Cutting the corner walk (octree/corner_walk.h) into tasks for threads.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "octree/corner_walk.h"
+
+namespace blackleaf::detail {
+
+inline constexpr int kTaskLevels = 4;  // tasks are corner cubes this far below the root: enough for any number of cores
+
+/// A corner cube and the nodes around it: arguments of corner_walk.
+struct EdgeTask {
+  Cube cube;
+  Around around;
+};
+
+inline void cut_tasks(const Around& around, const Cube& cube, int level, std::vector<EdgeTask>& tasks) {
+  const auto is_gray = [](const Node& node) { return node.is_gray(); };
+  const auto same = [&](const Node& node) { return node.colour() == around[0].colour(); };
+  const bool uniform = std::none_of(around.begin(), around.end(), is_gray);
+  if (uniform && std::all_of(around.begin(), around.end(), same)) return;
+  if (uniform || cube.level <= level) {
+    tasks.push_back({cube, around});
+    return;
+  }
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    Around below;
+    for (unsigned i = 0; i < 8; ++i) below[i] = around[octant | i].child(static_cast<int>(~(octant ^ i) & 7));
+    cut_tasks(below, cube.child(static_cast<int>(octant)), level, tasks);
+  }
+}
+
+/// Corner cubes that together cover every place where black and white meet: kTaskLevels below the root, or larger ones
+/// that need no cutting.
+inline std::vector<EdgeTask> edge_tasks(const Octree& octree) {
+  const Node root = brick_level_root(octree), white = Node::uniform(root.level(), Colour::white);
+  const std::int32_t side = std::int32_t{1} << root.level();
+  std::vector<EdgeTask> tasks;
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    Around around;
+    around.fill(white);
+    around[~octant & 7] = root;
+    const Cube cube{octant & 1 ? side : 0, octant & 2 ? side : 0, octant & 4 ? side : 0, root.level()};
+    cut_tasks(around, cube, std::max(2, root.level() - kTaskLevels), tasks);
+  }
+  return tasks;
+}
+
+}  // namespace blackleaf::detail
