@@ -12,6 +12,7 @@
 // by the square of the node's side; boxes only by the side itself.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -21,6 +22,7 @@
 
 #include "blackleaf/octree.h"
 #include "blackleaf/prepared_solid.h"
+#include "exact_boxes.h"
 
 namespace blackleaf::detail {
 
@@ -30,23 +32,34 @@ struct ChildBounds {
   std::array<std::int16_t, 8> reach;                     // n.x <= reach, x in units from the parent's corner
 
   /// Units of the bounds of the children of a node.
-  static std::int32_t unit(int level) { return level <= 7 ? 1 : std::int32_t{1} << (level - 7); }
+  static std::int32_t unit(int level) {
+    return std::int32_t{1} << (static_cast<unsigned>(std::max(level - 7, 0)) & 31U);
+  }
   /// The octants themselves, without planes.
   static const ChildBounds& plain(int level);
 };
 
-/// A node that is not white, of a tree prepared or not.
+/// A node that is not white, of a tree prepared or not. Floats are exact.
 struct ContactNode {
-  std::uint64_t word = 0;                     // of a gray node; the byte of one of level 1
-  const ChildBounds* bounds = nullptr;        // of its children; null where it has none
-  std::array<std::int32_t, 3> corner{};       // of its cube
-  std::array<std::int32_t, 3> low{}, high{};  // box of its black voxels, in voxels
-  std::array<float, 3> normal{};              // n.(X - corner) <= reach for its black points X; 0 without a plane
-  float reach = 0;
+  std::uint64_t word = 0;                // of a gray node; the byte of one of level 1
+  const ChildBounds* bounds = nullptr;   // of its children; null where it has none
+  std::array<std::int32_t, 3> corner{};  // of its cube
   int level = 0;
   bool black = false;
+  std::array<float, 3> place{}, half{};  // box of its black voxels: its centre from the corner, its half sides; voxels
+  std::array<float, 3> normal{};         // n.(X - corner) <= reach for its black points X; 0 without a plane
+  float reach = 0;
 
   std::int32_t side() const { return std::int32_t{1} << level; }
+  /// The box, in voxels of the universe.
+  IntegerBox box() const {
+    IntegerBox box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.low[axis] = corner[axis] + static_cast<std::int32_t>(place[axis] - half[axis]);
+      box.high[axis] = corner[axis] + static_cast<std::int32_t>(place[axis] + half[axis]);
+    }
+    return box;
+  }
   /// Children that are not white. Requires: level >= 1.
   unsigned filled() const {
     if (black) return 0xFF;
@@ -58,18 +71,14 @@ struct ContactNode {
     bytes |= bytes >> 1;
     return static_cast<unsigned>((bytes & 0x0101'0101'0101'0101) * 0x0102'0408'1020'4080 >> 56);
   }
-  /// Children that are black. Requires: level >= 1.
-  unsigned black_children() const {
-    if (black) return 0xFF;
-    if (level != 2) return static_cast<unsigned>(word & 0xFF);
-    std::uint64_t bytes = word;  // are all set?
-    bytes &= bytes >> 4;
-    bytes &= bytes >> 2;
-    bytes &= bytes >> 1;
-    return static_cast<unsigned>((bytes & 0x0101'0101'0101'0101) * 0x0102'0408'1020'4080 >> 56);
-  }
   /// The bounds of all children, at worst the octants. Requires: level >= 1.
   const ChildBounds& child_bounds() const { return bounds != nullptr ? *bounds : ChildBounds::plain(level); }
+};
+
+/// The bounds of the eight children of a node as floats: ContactNode's, but all from the parent's corner.
+struct ChildBoxes {
+  alignas(32) std::array<std::array<float, 8>, 3> place, half, normal;  // [axis][octant]
+  alignas(32) std::array<float, 8> reach;
 };
 
 }  // namespace blackleaf::detail
@@ -86,17 +95,35 @@ struct PreparedSolid::Storage {
 
 namespace blackleaf::detail {
 
+/// The box of the black voxels of a byte: its centre from the byte's corner and its half sides.
+struct ByteBox {
+  std::array<float, 3> place, half;
+};
+inline constexpr auto kByteBoxes = [] {
+  std::array<ByteBox, 256> boxes{};
+  for (unsigned byte = 1; byte < 256; ++byte)
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const unsigned upper = axis == 0 ? 0xAA : axis == 1 ? 0xCC : 0xF0;
+      const float low = (byte & ~upper) != 0 ? 0 : 1, high = (byte & upper) != 0 ? 2 : 1;
+      boxes[byte].place[axis] = 0.5F * (low + high);
+      boxes[byte].half[axis] = 0.5F * (high - low);
+    }
+  return boxes;
+}();
+
 /// The nodes of one tree, prepared or not. Valid as long as what it was made from.
 class ContactNodes {
  public:
   explicit ContactNodes(const Octree& octree);
-  explicit ContactNodes(const PreparedSolid& tree);
+  explicit ContactNodes(const PreparedSolid& solid);
 
   bool is_empty() const { return empty_; }
   /// Requires: not empty.
   const ContactNode& root() const { return root_; }
-  /// Requires: parent.level >= 1; the child is not white.
-  ContactNode child(const ContactNode& parent, int octant) const;
+  /// A child of a node with these boxes. Requires: parent.level >= 1; the child is not white.
+  ContactNode child(const ContactNode& parent, const ChildBoxes& boxes, std::size_t octant) const;
+  /// The same boxes, without SIMD.
+  static ChildBoxes boxes(const ContactNode& node);
 
  private:
   std::array<const std::uint64_t*, kMaxDepth + 1> words_{};
@@ -105,36 +132,25 @@ class ContactNodes {
   bool empty_ = true;
 };
 
-/// The box of the black voxels of a byte, from its corner: the lower end on each axis 0 or 1, the upper 1 or 2.
-struct ByteBox {
-  std::array<std::uint8_t, 3> low, high;
-};
-inline constexpr auto kByteBoxes = [] {
-  std::array<ByteBox, 256> boxes{};
-  for (unsigned byte = 1; byte < 256; ++byte)
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      const unsigned upper = axis == 0 ? 0xAA : axis == 1 ? 0xCC : 0xF0;
-      boxes[byte].low[axis] = (byte & ~upper) != 0 ? 0 : 1;
-      boxes[byte].high[axis] = (byte & upper) != 0 ? 2 : 1;
-    }
-  return boxes;
-}();
-
-inline ContactNode ContactNodes::child(const ContactNode& parent, int octant) const {
+inline ContactNode ContactNodes::child(const ContactNode& parent, const ChildBoxes& boxes, std::size_t octant) const {
   assert(parent.level >= 1 && (parent.filled() >> octant & 1) != 0);
   ContactNode child;
   child.level = parent.level - 1;
   const std::int32_t half = child.side();
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    child.corner[axis] = parent.corner[axis] + ((octant >> axis & 1) != 0 ? half : 0);
-  child.low = child.corner;
-  for (std::size_t axis = 0; axis < 3; ++axis) child.high[axis] = child.corner[axis] + half;
+  child.reach = boxes.reach[octant];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int32_t shift = (octant >> axis & 1) != 0 ? half : 0;
+    const auto by = static_cast<float>(shift);
+    child.corner[axis] = parent.corner[axis] + shift;
+    child.place[axis] = boxes.place[axis][octant] - by;
+    child.half[axis] = boxes.half[axis][octant];
+    child.normal[axis] = boxes.normal[axis][octant];
+    child.reach -= child.normal[axis] * by;  // whole numbers below 2^16 times a power of two
+  }
   const auto bit = std::uint64_t{1} << octant;
   if (parent.black) {
     child.black = true;
-    return child;
-  }
-  if (parent.level >= 3) {
+  } else if (parent.level >= 3) {
     child.black = (parent.word & bit) != 0;
     if (child.black) return child;
     const auto below = static_cast<std::size_t>(child.level);
@@ -142,34 +158,11 @@ inline ContactNode ContactNodes::child(const ContactNode& parent, int octant) co
         (parent.word >> 16) + static_cast<unsigned>(std::popcount(parent.word >> 8 & (bit - 1) & 0xFF));
     child.word = words_[below][index];
     if (bounds_[below] != nullptr) child.bounds = &bounds_[below][index];
-    if (parent.bounds == nullptr) return child;
-    const ChildBounds& bounds = *parent.bounds;
-    const std::int32_t unit = ChildBounds::unit(parent.level);
-    const auto at = static_cast<std::size_t>(octant);
-    float shift = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      child.low[axis] = parent.corner[axis] + bounds.low[axis][at] * unit;
-      child.high[axis] = parent.corner[axis] + bounds.high[axis][at] * unit;
-      child.normal[axis] = bounds.normal[axis][at];
-      if ((octant >> axis & 1) != 0) shift += child.normal[axis];
-    }
-    // Whole numbers below 2^16 times a power of two: exact.
-    child.reach = static_cast<float>(bounds.reach[at]) * static_cast<float>(unit) - shift * static_cast<float>(half);
-    return child;
-  }
-  // Without bounds of its own the parent's plane is as good as any.
-  child.normal = parent.normal;
-  child.reach = parent.reach;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if ((octant >> axis & 1) != 0) child.reach -= child.normal[axis] * static_cast<float>(half);
-  if (parent.level == 2) {
+  } else if (parent.level == 2) {
     child.word = parent.word >> (8 * octant) & 0xFF;
     child.black = child.word == 0xFF;
-    const ByteBox& box = kByteBoxes[child.word];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      child.high[axis] = child.corner[axis] + box.high[axis];
-      child.low[axis] = child.corner[axis] + box.low[axis];
-    }
+    child.place = kByteBoxes[child.word].place;
+    child.half = kByteBoxes[child.word].half;
   } else {
     child.black = true;
   }

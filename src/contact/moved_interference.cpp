@@ -8,9 +8,10 @@
 //     a child's box may do. Where two smooth surfaces face each other n and m nearly cancel, so the pair is seen to be
 //     apart as soon as its size times the angle between them is below the gap.
 // This is computed in 32-bit floating point, relative to the pair: all numbers are below
-//   m = |distance of the reference points|_1 + 4 (side of a + side of b)
+//   m = |distance of the corners|_1 + 4 (side of a + side of b) >= 8
 // and every margin is the result of fewer than 32 roundings of numbers below m (below 222 m for planes, |n|_1 < 222),
-// so it is off by less than 2^-19 m (2^-11 m); the edges' not being of length 1, or not at right angles, costs 2^-36 m.
+// so it is off by less than 2^-19 m (2^-11 m); the edges' not being of length 1, or not at right angles, costs 2^-36 m,
+// and the corners' distance 2^-21 < 2^-19 m.
 // What is nearer than that stays. Nothing is ever decided to interfere in floating point: a pair of black cubes that
 // stays is decided in integers (exact_boxes.h), and so are pairs whose boxes nearly touch.
 //
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "blackleaf/contact.h"
 #include "contact_node.h"
@@ -49,16 +51,18 @@ struct Query {
       : a(nodes_a),
         b(nodes_b),
         placement(motion),
-        exact(motion),
         voxelised(meaning == Meaning::voxelised),
         shrunk(voxelised ? 0.5F : 0.0F) {
     const auto& c = placement.turn();
+    for (std::size_t octant = 0; octant < 8; ++octant)
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < 3; ++i) octants[octant][j] += (octant >> i & 1) != 0 ? c[j][i] : 0;
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t i = 0; i < 3; ++i) {
         turn[j][i] = static_cast<float>(c[j][i]);
         reach[j][i] = std::abs(turn[j][i]);
         const std::size_t j1 = (j + 1) % 3, j2 = (j + 2) % 3, i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-        const double length = std::hypot(c[j1][i], c[j2][i]);
+        const double length = std::sqrt(c[j1][i] * c[j1][i] + c[j2][i] * c[j2][i]);
         CrossedAxis& axis = crossed[j][i];
         if (length < 0x1p-10) {  // nearly parallel edges: an axis along which nothing is ever apart
           axis = {{0, 0}, {1, 1}, {1, 1}};
@@ -70,26 +74,34 @@ struct Query {
       }
   }
 
-  // True iff a pair of a black child of each, or of single voxels, is a hit.
+  // True iff two black nodes interfere; voxelised, the first one is a voxel.
   bool hit(const ContactNode& in_a, const ContactNode& in_b) const {
-    if (!voxelised) return !exact.apart({in_a.low, in_a.high}, {in_b.low, in_b.high});
+    if (!voxelised) return !apart(in_a, in_b);
     const Placement::Point centre =
         placement.moved({2 * in_a.corner[0] + 1, 2 * in_a.corner[1] + 1, 2 * in_a.corner[2] + 1});
     for (std::size_t i = 0; i < 3; ++i) {
       constexpr int kBits = FixedMotion::kFractionBits + 1;
-      if (centre[i] < std::int64_t{in_b.low[i]} << kBits || centre[i] > std::int64_t{in_b.high[i]} << kBits)
+      if (centre[i] < std::int64_t{in_b.corner[i]} << kBits || centre[i] > std::int64_t{in_b.corner[i] + in_b.side()}
+                                                                               << kBits)
         return false;
     }
     return true;
   }
 
+  // True iff the interiors of the boxes of two nodes are disjoint.
+  bool apart(const ContactNode& in_a, const ContactNode& in_b) const {
+    if (!exact) exact.emplace(placement.motion());
+    return exact->apart(in_a.box(), in_b.box());
+  }
+
   const ContactNodes &a, &b;
   Placement placement;
-  ExactBoxes exact;
   bool voxelised;
   float shrunk;                                       // what a's boxes lose on every side
   std::array<std::array<float, 3>, 3> turn, reach;    // A / 2^38 and its absolute values, rows
   std::array<std::array<CrossedAxis, 3>, 3> crossed;  // [edge of b][edge of a]
+  std::array<std::array<double, 3>, 8> octants{};     // from a node of a to its octants, the child's side being 1
+  mutable std::optional<ExactBoxes> exact;            // made when first needed
 };
 
 }  // namespace
@@ -104,68 +116,79 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<float, 8>;
 using Vec = hn::Vec<Lanes>;
 
+/// From the corner of b's node to that of a's, in b's frame. Made by less than 64 additions of numbers below 2^25, so
+/// off by less than 2^-21 voxels at depth 20.
+using Offset = std::array<double, 3>;
+
 struct Row {
+  ChildBoxes boxes;
   HWY_ALIGN std::array<float, 8> margin;  // how far apart a child is at least
   float band;                             // how wrong that may be
 };
 
 // The children of a node that are not certain to be apart from a node of the other tree, as a mask.
 template <bool kNodeOfA>
-HWY_ATTR unsigned survivors(const Query& query, const ContactNode& node, const ContactNode& other, Row& row) {
+HWY_ATTR unsigned survivors(const Query& query, const ContactNode& node, const ContactNode& other, const Offset& offset,
+                            Row& row) {
   const Lanes d;
   const hn::Rebind<std::uint8_t, Lanes> d8;
   const hn::Rebind<std::int8_t, Lanes> signed8;
   const hn::Rebind<std::int16_t, Lanes> d16;
   const hn::Rebind<std::int32_t, Lanes> d32;
-  std::array<std::int32_t, 3> corner, centre;  // doubled
-  std::array<float, 3> other_half;
-  std::int32_t longest = 0;
+  // From the other's place to the node's corner, and the other's plane, n.x <= reach, with x from the node's corner on
+  // the node's axes.
+  std::array<float, 3> from, start, normal{};
+  for (std::size_t i = 0; i < 3; ++i) from[i] = static_cast<float>(offset[i]);
+  float reach = other.reach;
   for (std::size_t i = 0; i < 3; ++i) {
-    corner[i] = 2 * node.corner[i];
-    centre[i] = other.low[i] + other.high[i];
-    const std::int32_t side = other.high[i] - other.low[i];
-    longest = std::max(longest, side);
-    other_half[i] = 0.5F * static_cast<float>(side) - (kNodeOfA ? 0 : query.shrunk);
-  }
-  const std::array<double, 3> from =
-      kNodeOfA ? query.placement.from(corner, centre) : query.placement.from(centre, corner);
-  std::array<float, 3> start;
-  for (std::size_t i = 0; i < 3; ++i) start[i] = static_cast<float>(from[i]);
-  const float size =
-      std::abs(start[0]) + std::abs(start[1]) + std::abs(start[2]) + 4 * static_cast<float>(node.side() + longest);
-  row.band = size * 0x1p-19F;
-  const ChildBounds& bounds = node.child_bounds();
-  const auto unit = static_cast<float>(ChildBounds::unit(node.level));
-
-  // The other's plane, on the node's axes and from the node's corner.
-  const bool planes = node.bounds != nullptr || node.reach != 0 || other.reach != 0;
-  std::array<float, 3> other_normal{};
-  float other_reach = other.reach;
-  if (planes) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto to_centre = 0.5F * static_cast<float>(centre[i] - 2 * other.corner[i]);
-      if (kNodeOfA) {
-        for (std::size_t j = 0; j < 3; ++j) other_normal[i] += query.turn[j][i] * other.normal[j];
-        other_reach -= other.normal[i] * (start[i] + to_centre);
-      } else {
-        for (std::size_t j = 0; j < 3; ++j) other_normal[i] += query.turn[i][j] * other.normal[j];
-        other_reach += other_normal[i] * start[i] - other.normal[i] * to_centre;
-        other_reach -= query.shrunk * std::abs(other.normal[i]);
-      }
+    start[i] = from[i];
+    if (kNodeOfA) {
+      start[i] -= other.place[i];
+      for (std::size_t j = 0; j < 3; ++j) normal[i] += query.turn[j][i] * other.normal[j];
+      reach -= other.normal[i] * from[i];
+    } else {
+      for (std::size_t j = 0; j < 3; ++j) start[i] += query.turn[i][j] * other.place[j];
+      for (std::size_t j = 0; j < 3; ++j) normal[i] += query.turn[i][j] * other.normal[j];
+      reach += normal[i] * from[i] - query.shrunk * std::abs(other.normal[i]);
     }
   }
-
-  const auto band = hn::Set(d, row.band), half = hn::Set(d, 0.5F * unit);
+  const float size =
+      std::abs(from[0]) + std::abs(from[1]) + std::abs(from[2]) + 4 * static_cast<float>(node.side() + other.side());
+  row.band = size * 0x1p-18F;
+  const ChildBounds& bounds = node.child_bounds();
+  const auto unit = static_cast<float>(ChildBounds::unit(node.level));
+  const unsigned filled = node.filled();
+  const auto band = hn::Set(d, row.band), scale = hn::Set(d, 0.5F * unit);
   unsigned stay = 0;
   for (std::size_t lane = 0; lane < 8; lane += hn::Lanes(d)) {
     std::array<Vec, 3> place, own_half;  // of the children, from the node's corner
     for (std::size_t i = 0; i < 3; ++i) {
       const auto low = hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d8, &bounds.low[i][lane])));
       const auto high = hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d8, &bounds.high[i][lane])));
-      place[i] = hn::Mul(hn::Add(low, high), half);
-      own_half[i] = hn::Mul(hn::Sub(high, low), half);
+      place[i] = hn::Mul(hn::Add(low, high), scale);
+      own_half[i] = hn::Mul(hn::Sub(high, low), scale);
+      hn::Store(place[i], d, &row.boxes.place[i][lane]);
+      hn::Store(own_half[i], d, &row.boxes.half[i][lane]);
       if (kNodeOfA) own_half[i] = hn::Sub(own_half[i], hn::Set(d, query.shrunk));
     }
+    // What has no bounds for its children has its own plane for them all.
+    auto gap = hn::Set(d, -reach);
+    auto own_reach = hn::Set(d, node.reach);
+    if (node.bounds != nullptr)
+      own_reach = hn::Mul(hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d16, &bounds.reach[lane]))), hn::Set(d, unit));
+    hn::Store(own_reach, d, &row.boxes.reach[lane]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      auto own = hn::Set(d, node.normal[i]);
+      if (node.bounds != nullptr)
+        own = hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(signed8, &bounds.normal[i][lane])));
+      hn::Store(own, d, &row.boxes.normal[i][lane]);
+      const auto sum = hn::Add(own, hn::Set(d, normal[i]));
+      gap = hn::MulAdd(sum, place[i], gap);
+      gap = hn::NegMulAdd(hn::Abs(sum), own_half[i], gap);
+      if (kNodeOfA) gap = hn::MulAdd(hn::Abs(own), hn::Set(d, query.shrunk), gap);
+    }
+    auto gone = hn::Gt(hn::Sub(gap, own_reach), hn::Mul(band, hn::Set(d, 256.0F)));
+
     std::array<Vec, 3> apart, half_a, half_b;  // from the centre of b's box to that of a's
     for (std::size_t i = 0; i < 3; ++i) {
       apart[i] = hn::Set(d, start[i]);
@@ -173,8 +196,8 @@ HWY_ATTR unsigned survivors(const Query& query, const ContactNode& node, const C
         for (std::size_t j = 0; j < 3; ++j) apart[i] = hn::MulAdd(hn::Set(d, query.turn[i][j]), place[j], apart[i]);
       else
         apart[i] = hn::Sub(apart[i], place[i]);
-      half_a[i] = kNodeOfA ? own_half[i] : hn::Set(d, other_half[i]);
-      half_b[i] = kNodeOfA ? hn::Set(d, other_half[i]) : own_half[i];
+      half_a[i] = kNodeOfA ? own_half[i] : hn::Set(d, other.half[i] - query.shrunk);
+      half_b[i] = kNodeOfA ? hn::Set(d, other.half[i]) : own_half[i];
     }
     auto margin = hn::Set(d, -1e30F);
     for (std::size_t j = 0; j < 3; ++j) {
@@ -190,25 +213,14 @@ HWY_ATTR unsigned survivors(const Query& query, const ContactNode& node, const C
       for (std::size_t j = 0; j < 3; ++j) m = hn::NegMulAdd(hn::Set(d, query.reach[j][i]), half_b[j], m);
       margin = hn::Max(margin, m);
     }
-    auto gone = hn::Gt(margin, band);
-    if (planes) {
-      auto gap = hn::Set(d, -other_reach);
-      // What has no bounds for its children has its own plane for them all.
-      const bool each = node.bounds != nullptr;
-      auto bound =
-          each ? hn::Mul(hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d16, &bounds.reach[lane]))), hn::Set(d, unit))
-               : hn::Set(d, node.reach);
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto own = each ? hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(signed8, &bounds.normal[i][lane])))
-                              : hn::Set(d, node.normal[i]);
-        const auto sum = hn::Add(own, hn::Set(d, other_normal[i]));
-        gap = hn::MulAdd(sum, place[i], gap);
-        gap = hn::NegMulAdd(hn::Abs(sum), own_half[i], gap);
-        if (kNodeOfA) bound = hn::NegMulAdd(hn::Abs(own), hn::Set(d, query.shrunk), bound);
-      }
-      gone = hn::Or(gone, hn::Gt(hn::Sub(gap, bound), hn::Mul(band, hn::Set(d, 256.0F))));
-    }
-    if (!hn::AllTrue(d, gone)) {
+    gone = hn::Or(gone, hn::Gt(margin, band));
+    const auto left = [&]() HWY_ATTR {
+      std::array<std::uint8_t, 8> bits{};
+      hn::StoreMaskBits(d, gone, bits.data());
+      return filled & ~(static_cast<unsigned>(bits[0]) << lane) & (((1u << hn::Lanes(d)) - 1) << lane);
+    };
+    unsigned these = left();
+    if (these != 0) {
       for (std::size_t j = 0; j < 3; ++j)
         for (std::size_t i = 0; i < 3; ++i) {
           const CrossedAxis& axis = query.crossed[j][i];
@@ -222,20 +234,20 @@ HWY_ATTR unsigned survivors(const Query& query, const ContactNode& node, const C
           margin = hn::Max(margin, m);
         }
       gone = hn::Or(gone, hn::Gt(margin, band));
+      these = left();
     }
-    std::array<std::uint8_t, 8> bits{};
-    hn::StoreMaskBits(d, hn::Not(gone), bits.data());
-    stay |= static_cast<unsigned>(bits[0]) << lane;
-    hn::StoreU(margin, d, &row.margin[lane]);
+    stay |= these;
+    hn::Store(margin, d, &row.margin[lane]);
   }
-  return stay & node.filled();
+  return stay;
 }
 
-HWY_ATTR bool meet(const Query& query, const ContactNode& in_a, const ContactNode& in_b) {
+HWY_ATTR bool meet(const Query& query, const ContactNode& in_a, const ContactNode& in_b, const Offset& offset) {
   const bool splits_a = in_a.level > 0 && (!in_a.black || query.voxelised), splits_b = !in_b.black;
   const bool of_a = splits_a && (!splits_b || in_a.level >= in_b.level);
   Row row;
-  unsigned stay = of_a ? survivors<true>(query, in_a, in_b, row) : survivors<false>(query, in_b, in_a, row);
+  unsigned stay =
+      of_a ? survivors<true>(query, in_a, in_b, offset, row) : survivors<false>(query, in_b, in_a, offset, row);
   const ContactNode& node = of_a ? in_a : in_b;
   const ContactNode& other = of_a ? in_b : in_a;
   while (stay != 0) {
@@ -246,7 +258,7 @@ HWY_ATTR bool meet(const Query& query, const ContactNode& in_a, const ContactNod
       if (row.margin[octant] < row.margin[next]) next = octant;
     }
     stay &= ~(1u << next);
-    const ContactNode child = (of_a ? query.a : query.b).child(node, static_cast<int>(next));
+    const ContactNode child = (of_a ? query.a : query.b).child(node, row.boxes, next);
     const ContactNode& below_a = of_a ? child : other;
     const ContactNode& below_b = of_a ? other : child;
     if (below_a.black && below_b.black && (!query.voxelised || below_a.level == 0)) {
@@ -254,10 +266,11 @@ HWY_ATTR bool meet(const Query& query, const ContactNode& in_a, const ContactNod
       continue;
     }
     // Nearly touching: as faces of voxels do, over whole areas.
-    if (!query.voxelised && row.margin[next] > -row.band &&
-        query.exact.apart({below_a.low, below_a.high}, {below_b.low, below_b.high}))
-      continue;
-    if (meet(query, below_a, below_b)) return true;
+    if (!query.voxelised && row.margin[next] > -row.band && query.apart(below_a, below_b)) continue;
+    Offset below = offset;
+    for (std::size_t i = 0; i < 3; ++i)
+      below[i] += of_a ? query.octants[next][i] * child.side() : (next >> i & 1) != 0 ? -child.side() : 0;
+    if (meet(query, below_a, below_b, below)) return true;
   }
   return false;
 }
@@ -265,7 +278,7 @@ HWY_ATTR bool meet(const Query& query, const ContactNode& in_a, const ContactNod
 bool meet_roots(const Query& query) {
   const ContactNode &a = query.a.root(), &b = query.b.root();
   if (a.black && b.black && !query.voxelised) return query.hit(a, b);
-  return meet(query, a, b);
+  return meet(query, a, b, query.placement.shift());
 }
 
 }  // namespace blackleaf::detail::HWY_NAMESPACE

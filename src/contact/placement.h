@@ -38,14 +38,10 @@ class Placement {
     return result;
   }
 
-  /// P(X) - Y in voxels from twice X and twice Y, off by 2^-53 of itself at most. Requires: as above, for Y too.
-  std::array<double, 3> from(const std::array<std::int32_t, 3>& doubled_x,
-                             const std::array<std::int32_t, 3>& doubled_y) const {
-    const Point moved_x = moved(doubled_x);
+  /// P(0) in voxels, off by 2^-53 of itself at most.
+  std::array<double, 3> shift() const {
     std::array<double, 3> result;
-    for (std::size_t i = 0; i < 3; ++i)
-      result[i] =
-          static_cast<double>(moved_x[i] - (std::int64_t{doubled_y[i]} << FixedMotion::kFractionBits)) * (0x1p-38 / 2);
+    for (std::size_t i = 0; i < 3; ++i) result[i] = static_cast<double>(motion_.inverse_translation[i]) * 0x1p-38;
     return result;
   }
 

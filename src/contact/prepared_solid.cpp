@@ -126,12 +126,13 @@ class Preparer {
     const std::uint64_t word = levels_[static_cast<std::size_t>(level)][index];
     if (level == 2) {
       for (unsigned octant = 0; octant < 8; ++octant) {
-        const ByteBox& box = kByteBoxes[word >> (8 * octant) & 0xFF];
         if ((word >> (8 * octant) & 0xFF) == 0) continue;
+        const ByteBox& box = kByteBoxes[word >> (8 * octant) & 0xFF];
         std::int64_t bound = at_corner;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          bound += normal[axis] * std::int64_t{(normal[axis] > 0 ? box.high[axis] : box.low[axis]) +
-                                               ((octant >> axis & 1) != 0 ? 2 : 0)};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const float end = normal[axis] > 0 ? box.place[axis] + box.half[axis] : box.place[axis] - box.half[axis];
+          bound += normal[axis] * std::int64_t{static_cast<int>(end) + ((octant >> axis & 1) != 0 ? 2 : 0)};
+        }
         if (bound <= best) continue;
         for (std::uint64_t rest = word >> (8 * octant) & 0xFF; rest != 0; rest &= rest - 1) {
           const auto voxel = static_cast<unsigned>(std::countr_zero(rest));
@@ -183,7 +184,8 @@ ContactNode plain_root(const Octree& octree) {
   root.level = node.level();
   root.black = node.is_black();
   root.word = node.is_gray() ? node.word() : 0;
-  root.high.fill(root.side());
+  root.half.fill(0.5F * static_cast<float>(root.side()));
+  root.place = root.half;
   return root;
 }
 
@@ -207,6 +209,23 @@ const ChildBounds& ChildBounds::plain(int level) {
   return all[static_cast<std::size_t>(level)];
 }
 
+ChildBoxes ContactNodes::boxes(const ContactNode& node) {
+  ChildBoxes boxes{};
+  const ChildBounds& bounds = node.child_bounds();
+  const auto unit = static_cast<float>(ChildBounds::unit(node.level));
+  for (std::size_t octant = 0; octant < 8; ++octant) {
+    // Where it has no bounds for its children a node's own plane is one of theirs.
+    boxes.reach[octant] = node.bounds != nullptr ? unit * static_cast<float>(bounds.reach[octant]) : node.reach;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float low = bounds.low[axis][octant], high = bounds.high[axis][octant];
+      boxes.place[axis][octant] = 0.5F * unit * (low + high);
+      boxes.half[axis][octant] = 0.5F * unit * (high - low);
+      boxes.normal[axis][octant] = node.bounds != nullptr ? bounds.normal[axis][octant] : node.normal[axis];
+    }
+  }
+  return boxes;
+}
+
 ContactNodes::ContactNodes(const Octree& octree) : words_(level_words(octree)), empty_(octree.is_empty()) {
   if (!empty_) root_ = plain_root(octree);
 }
@@ -227,8 +246,10 @@ PreparedSolid::PreparedSolid(const Octree& octree) {
       detail::Preparer preparer(octree, *storage);
       const detail::Summary summary = preparer.prepare(root.level, 0);
       root.bounds = storage->bounds[static_cast<std::size_t>(root.level)].data();
-      root.low = summary.low;
-      root.high = summary.high;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        root.place[axis] = 0.5F * static_cast<float>(summary.low[axis] + summary.high[axis]);
+        root.half[axis] = 0.5F * static_cast<float>(summary.high[axis] - summary.low[axis]);
+      }
       const detail::Normal normal = detail::normal_of(summary);
       for (std::size_t axis = 0; axis < 3; ++axis) root.normal[axis] = normal[axis];
       // Rounded up: the numbers need up to 28 bits.
