@@ -195,9 +195,10 @@ TEST(PreparedSolid, BoundsHoldAllThatIsBlack) {
       if (node.black) {
         for (const detail::ContactNode& n : above) {
           float most = 0;
+          const detail::IntegerBox box = n.box();
           for (std::size_t axis = 0; axis < 3; ++axis) {
-            ASSERT_GE(node.corner[axis], n.low[axis]);
-            ASSERT_LE(node.corner[axis] + node.side(), n.high[axis]);
+            ASSERT_GE(node.corner[axis], box.low[axis]);
+            ASSERT_LE(node.corner[axis] + node.side(), box.high[axis]);
             const std::int32_t farthest = node.corner[axis] - n.corner[axis] + (n.normal[axis] > 0 ? node.side() : 0);
             most += n.normal[axis] * static_cast<float>(farthest);
           }
@@ -205,16 +206,13 @@ TEST(PreparedSolid, BoundsHoldAllThatIsBlack) {
           tight += n.reach != 0 && most == n.reach;
         }
       } else {
-        unsigned filled = 0, black = 0;
-        for (int octant = 0; octant < 8; ++octant) {
-          const Node child = witness.child(octant);
-          filled |= (child.is_white() ? 0u : 1u) << octant;
-          black |= (child.is_black() ? 1u : 0u) << octant;
-        }
+        unsigned filled = 0;
+        for (int octant = 0; octant < 8; ++octant) filled |= (witness.child(octant).is_white() ? 0u : 1u) << octant;
         ASSERT_EQ(node.filled(), filled);
-        ASSERT_EQ(node.black_children(), black);
-        for (int octant = 0; octant < 8; ++octant)
-          if ((filled >> octant & 1) != 0) self(self, nodes.child(node, octant), witness.child(octant));
+        const detail::ChildBoxes boxes = nodes.boxes(node);
+        for (std::size_t octant = 0; octant < 8; ++octant)
+          if ((filled >> octant & 1) != 0)
+            self(self, nodes.child(node, boxes, octant), witness.child(static_cast<int>(octant)));
       }
       above.pop_back();
     };
