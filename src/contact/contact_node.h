@@ -18,10 +18,14 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "blackleaf/octree.h"
 #include "blackleaf/prepared_solid.h"
+#include "box_tree.h"
 #include "exact_boxes.h"
 
 namespace blackleaf::detail {
@@ -89,6 +93,11 @@ struct PreparedSolid::Storage {
   Octree octree;
   std::array<std::vector<detail::ChildBounds>, kMaxDepth + 1> bounds;  // by level, as the words
   detail::ContactNode root;                                            // unless the octree is empty
+  // For questions of distance; made when the first is asked (box_tree.h).
+  mutable std::once_flag boxes_made;
+  mutable std::unique_ptr<const detail::BoxTree> boxes;
+
+  explicit Storage(Octree solid) : octree(std::move(solid)) {}
 };
 
 }  // namespace blackleaf

@@ -239,7 +239,7 @@ ContactNodes::ContactNodes(const PreparedSolid& tree) : ContactNodes(tree.octree
 }  // namespace detail
 
 PreparedSolid::PreparedSolid(const Octree& octree) {
-  auto storage = std::make_shared<Storage>(Storage{octree, {}, {}});
+  auto storage = std::make_shared<Storage>(octree);
   if (!octree.is_empty()) {
     detail::ContactNode& root = storage->root = detail::plain_root(octree);
     if (!root.black && root.level >= 3) {

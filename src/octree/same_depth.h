@@ -8,11 +8,12 @@
 
 namespace blackleaf::detail {
 
-inline void require_same_depth(const Octree& a, const Octree& b) {
-  if (a.depth() != b.depth())
-    throw Error(ErrorCode::bad_argument,
-                "the octrees have depths " + std::to_string(a.depth()) + " and " + std::to_string(b.depth()),
+inline void require_same_depth(int a, int b) {
+  if (a != b)
+    throw Error(ErrorCode::bad_argument, "the octrees have depths " + std::to_string(a) + " and " + std::to_string(b),
                 "build both with the same depth");
 }
+
+inline void require_same_depth(const Octree& a, const Octree& b) { require_same_depth(a.depth(), b.depth()); }
 
 }  // namespace blackleaf::detail

@@ -1,0 +1,43 @@
+#include "nearest_pair.h"
+
+#include <algorithm>
+
+namespace blackleaf::detail {
+
+NearestPair::NearestPair(const BoxTree& a, const BoxTree& b, const RigidMap& map_of_b) : a_(a), b_(b), map_(map_of_b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    g_[i] = map_.shift[static_cast<Eigen::Index>(i)];
+    for (std::size_t j = 0; j < 3; ++j) {
+      f_[i][j] = map_.rotation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      size_[i][j] = std::abs(f_[i][j]);
+    }
+  }
+  const double size = map_.shift.cwiseAbs().sum() + 8 * std::ldexp(1.0, std::max(a.depth, b.depth));
+  slop_ = rounding_slop(size);
+  // In b's frame lengths are those of a's up to 2^-37 of themselves (FixedMotion), and angles likewise.
+  loss_ = slop_ + 0x1p-35 * size;
+}
+
+std::array<double, 2> NearestPair::lower(const BoxNode& a, const BoxNode& b) const {
+  std::array<double, 3> d, across;
+  double squared = 0, in_a = 0, in_b = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    d[i] = f_[i][0] * double{b.centre[0]} + f_[i][1] * double{b.centre[1]} + f_[i][2] * double{b.centre[2]} + g_[i] -
+           double{a.centre[i]};
+    const double reach =
+        size_[i][0] * double{b.half[0]} + size_[i][1] * double{b.half[1]} + size_[i][2] * double{b.half[2]};
+    const double gap = std::max(0.0, std::abs(d[i]) - double{a.half[i]} - reach);
+    in_a += gap * gap;
+    squared += d[i] * d[i];
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    across[j] = f_[0][j] * d[0] + f_[1][j] * d[1] + f_[2][j] * d[2];
+    const double reach =
+        size_[0][j] * double{a.half[0]} + size_[1][j] * double{a.half[1]} + size_[2][j] * double{a.half[2]};
+    const double gap = std::max(0.0, std::abs(across[j]) - double{b.half[j]} - reach);
+    in_b += gap * gap;
+  }
+  return {std::max(0.0, std::sqrt(std::max(in_a, in_b)) - loss_), squared};
+}
+
+}  // namespace blackleaf::detail
