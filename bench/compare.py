@@ -24,7 +24,7 @@ RESULTS = os.path.join(ROOT, "bench", "results.json")
 TABLES = os.path.join(ROOT, "docs", "PERFORMANCE.md")
 PROGRAM = os.path.join(ROOT, "build", "bench", "bench", "blackleaf_bench")
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
-COUNTERS = ("bytes", "voxels")  # what else than seconds a benchmark may report
+COUNTERS = ("bytes", "voxels", "ratio")  # what else than seconds a benchmark may report
 
 
 def fail(message):
@@ -71,7 +71,7 @@ def select(keys, names):
 
 
 def value_of(run, threads):
-    """What one repetition measured: bytes, voxels, seconds an item, or seconds.
+    """What one repetition measured: bytes, voxels, a ratio, seconds an item, or seconds.
 
     For one thread these are the process's CPU seconds, which equal the elapsed ones on an idle machine and leave out what
     other programs did meanwhile; for several threads they are elapsed seconds.

@@ -14,8 +14,8 @@ namespace blackleaf::bench {
 
 /// Registers a contender; `run` is a benchmark function of state. Elapsed time and the process's
 /// CPU time are both measured; bench/compare says which one counts.
-/// What is counted is, in this order: the counter "bytes" or "voxels" if set, the time per item if items are set, else
-/// the time per iteration.
+/// What is counted is, in this order: the counter "bytes", "voxels" or "ratio" if set, the time per item if items are
+/// set, else the time per iteration.
 template <class Run>
 benchmark::internal::Benchmark* contender(const std::string& key, const std::string& who, Run run) {
   return benchmark::RegisterBenchmark((key + "@" + who).c_str(), run)

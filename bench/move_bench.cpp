@@ -1,14 +1,17 @@
 // move/N/tT: 30 degrees about (1,1,1) through the universe's centre and a translation of (5.3, -7.1, 2.9) voxels.
+// move-growth/N: how many times as long it takes as at N/2. move-speedup/N: how many times faster two threads are.
 // move-memory/N: the most bytes at once while it is done, with the source.
 #include "blackleaf/move.h"
 
 #include <cmath>
+#include <utility>
 
 #include "allocations.h"
 #include "contenders.h"
 #include "inputs.h"
 #include "octree/brick.h"
 #include "octree/produce.h"
+#include "paired.h"
 #include "papers/wa87.h"
 
 namespace blackleaf::bench {
@@ -122,14 +125,21 @@ std::size_t memory(int depth) {
          });
 }
 
+auto moving(int depth, int threads) {
+  return [&octree = bunny(depth), motion = bunny_motion(depth), threads] {
+    benchmark::DoNotOptimize(move(octree, motion, Leaving::error, {threads, {}}));
+  };
+}
+
 }  // namespace
 
 void add_move() {
   const auto few = [](benchmark::internal::Benchmark* added) { added->Iterations(1)->Repetitions(3); };
-  for (const int depth : {8, 9, 10, 11, 12})
+  for (const int depth : {8, 9, 10, 11, 12, 13, 14})
     for (const int threads : {1, 2}) {
       const std::string key = "move/" + side_name(depth) + "/t" + std::to_string(threads);
-      contender(key, "ours", [=](benchmark::State& s) { ours(s, depth, threads); });
+      const auto own = contender(key, "ours", [=](benchmark::State& s) { ours(s, depth, threads); });
+      if (depth > 12) few(own);
       if (threads != 1 || depth > 10) continue;
       contender(key, "naive", [=](benchmark::State& s) { naive(s, depth); });
       few(contender(key, "dense-blocks", [=](benchmark::State& s) { dense(s, depth, 32); }));
@@ -137,6 +147,13 @@ void add_move() {
       few(contender(key, "paper", [=](benchmark::State& s) { paper(s, depth); }));
       few(contender(key, "dense", [=](benchmark::State& s) { dense(s, depth, std::int64_t{1} << depth); }));
     }
+  // Many rounds of what is short.
+  for (const auto& [depth, rounds] : {std::pair(9, 61), {10, 31}, {11, 15}, {12, 7}, {13, 5}, {14, 3}})
+    once("move-growth/" + side_name(depth), "ours", "ratio",
+         [=] { return growth(rounds, 4, moving(depth - 1, 1), moving(depth, 1)); });
+  for (const auto& [depth, rounds] : {std::pair(9, 200), {10, 100}, {11, 30}, {12, 10}})
+    once("move-speedup/" + side_name(depth), "ours", "ratio",
+         [=] { return speedup(rounds, moving(depth, 1), moving(depth, 2)); });
   for (const int depth : {9, 10, 11}) {
     const std::string key = "move-memory/" + side_name(depth);
     sized(key, "ours", [=] { return memory(depth); });

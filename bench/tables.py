@@ -4,10 +4,12 @@ Only what stands between a pair of lines <!-- NAME: from bench/results.json --> 
 """
 import re
 
-SIDES = ("128", "256", "512", "1024", "2048", "4096")
+SIDES = ("128", "256", "512", "1024", "2048", "4096", "8192", "16384")
 
 
 def shown(value, unit):
+    if unit == "ratio":
+        return f"{value:.2f} x"
     if unit != "s":
         return f"{value:,.0f} {'B' if unit == 'bytes' else unit}"
     for factor, name in ((1, "s"), (1e-3, "ms"), (1e-6, "us")):
@@ -41,12 +43,21 @@ def by_subject(results, suffix):
             yield found[1], found[2], result["ours"]
 
 
+def put_paired(rows, results, what, digits):
+    """What was measured in turns (bench/paired.h) takes the place of ratios of figures made one after the other."""
+    for subject, side, ratio in by_subject(results, ""):
+        found = re.fullmatch(rf"(.+)-{what}", subject)
+        if found:
+            rows.setdefault(found[1], {})[side] = f"{ratio:.{digits}f}"
+
+
 def threads_table(results):
     rows = {}
     for subject, side, one in by_subject(results, "/t1"):
         two = results.get(f"{subject}/{side}/t2")
         if two:
             rows.setdefault(subject, {})[side] = f"{one / two['ours']:.2f}"
+    put_paired(rows, results, "speedup", 2)
     return side_table(rows)
 
 
@@ -58,6 +69,7 @@ def growth_table(results):
         for side, ours in of_side.items():
             if side // 2 in of_side:
                 rows.setdefault(subject, {})[str(side)] = f"{ours / of_side[side // 2]:.1f}"
+    put_paired(rows, results, "growth", 1)
     return side_table(rows)
 
 

@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "blackleaf/drawing.h"
 #include "blackleaf/error.h"
+#include "blackleaf/label_map.h"
 #include "blackleaf/measures.h"
 #include "blackleaf/sweep.h"
 #include "commands.h"
@@ -142,13 +145,31 @@ int run_animate(Session& session) {
 
   const Path path = read_path_input(session, path_name, input);
   const std::vector<double> times = frame_times(path, frames, fps);
-  const Octree solid = read_solid(session, input, label);
+  // Octrees of a file of labels have all of them; a picture shows one solid.
+  std::optional<LabelMap> map;
+  Octree solid;
+  if (kind == "octree") {
+    OctreeFile file = read_octree(session, input);
+    if (label && !file.labels) refuse_label(input);
+    if (!label) map = file.labels;
+    solid = label ? solid_of(*file.labels, *label, input) : file.octree;
+  } else {
+    solid = read_solid(session, input, label);
+  }
   std::vector<Motion> way;
   way.reserve(times.size());
   for (const double time : times) way.push_back(path.motion_at(time));
   // All frames are asked before the first is written.
-  const RoomForMotions room =
-      session.stage("animate", [&](const Work& work) { return room_for(solid, way, leaving.choice(), work); });
+  RoomForMotions room;
+  session.stage("animate", [&](const Work& work) {
+    if (!map) {
+      room = room_for(solid, way, leaving.choice(), work);
+      return;
+    }
+    RoomForLabels with_labels = room_for(*map, way, leaving.choice(), work);
+    map = with_labels.labels;
+    room.motions = std::move(with_labels.motions);
+  });
   PageOptions page;
   if (view) {
     const Eigen::AlignedBox2d region = common_region(room.octree, *view, room.motions);
@@ -164,14 +185,19 @@ int run_animate(Session& session) {
                     [&, from, to](double done) { return work.progress((i + from + (to - from) * done) / total); }};
       };
       const auto index = static_cast<std::size_t>(i);
-      const Octree moved = move(room.octree, room.motions[index], leaving.choice(), part(0, 0.5));
+      const Motion& motion = room.motions[index];
       const std::string name = names.of(i + 1);
       if (view) {
+        const Octree moved = move(room.octree, motion, leaving.choice(), part(0, 0.5));
         write_drawing(draw(moved, *view, part(0.5, 1)), name, page);
       } else {
         Json options = {{"path", base_name(path_name)}, {"time", times[index]}, {"frame", i + 1}, {"frames", total}};
         if (label) options["label"] = *label;
-        save(moved, name, metadata_text(session, input, options));
+        const std::string metadata = metadata_text(session, input, options);
+        if (map)
+          save(move(*map, motion, leaving.choice(), part(0, 1)), name, metadata);
+        else
+          save(move(room.octree, motion, leaving.choice(), part(0, 1)), name, metadata);
       }
       set_left_behind(fmt::format("{} of {} frames were written", i + 1, total));
     }

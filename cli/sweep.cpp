@@ -1,8 +1,10 @@
 // blackleaf sweep: the space that a solid passes through on its way along a path.
 #include "blackleaf/sweep.h"
 
-#include <fmt/format.h>
+#include <optional>
+#include <vector>
 
+#include "blackleaf/label_map.h"
 #include "commands.h"
 #include "files.h"
 #include "motion_options.h"
@@ -29,17 +31,31 @@ int run_sweep(Session& session) {
 
   check_octree_output(session, output);
   const Path path = read_path_input(session, path_name, input);
-  const Octree source = read_solid(session, input, label);
+  const OctreeFile file = read_octree(session, input);
+  if (label && !file.labels) refuse_label(input);
+  const bool all_labels = file.labels && !label;
+  const Octree source = label ? solid_of(*file.labels, *label, input) : file.octree;
   const std::vector<Motion> motions = motions_along(source, path, step.value_or(1));
-  const Octree swept =
-      session.stage("sweep", [&](const Work& work) { return sweep(source, motions, leaving.choice(), work); });
-  warn_if_empty(session, swept);
+  std::optional<LabelMap> labels;
+  Octree swept;
+  session.stage("sweep", [&](const Work& work) {
+    if (all_labels)
+      labels = sweep(*file.labels, motions, leaving.choice(), work);
+    else
+      swept = sweep(source, motions, leaving.choice(), work);
+  });
   Json options = {{"path", base_name(path_name)},
                   {"step", step.value_or(1)},
                   {"motions", motions.size()},
                   {"leaving", leaving.name()}};
   if (label) options["label"] = *label;
-  write_octree(session, swept, output, input, options, {{"motions", motions.size()}});
+  const Json more = {{"motions", motions.size()}};
+  if (labels) {
+    write_labels(session, *labels, output, input, options, more);
+  } else {
+    warn_if_empty(session, swept);
+    write_octree(session, swept, output, input, options, more);
+  }
   return kDone;
 }
 

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "blackleaf/label_map.h"
 #include "blackleaf/motion.h"
 #include "blackleaf/move.h"
 #include "blackleaf/octree.h"
@@ -34,6 +35,16 @@ Octree sweep(const Octree& octree, std::span<const Motion> motions, Leaving leav
 Octree sweep(const Octree& octree, const Path& path, double step = 1, Leaving leaving = Leaving::error,
              const Work& work = {});
 
+/// The sweep of all labels at once: every voxel takes the largest label that any of the motions brings to it, as move()
+/// does; 0 where none does. In other words: the solids of the labels are swept one by one, in increasing order, and
+/// each paints over what is there. So the voxels of all labels but 0 are those that the solid of all labels but 0
+/// sweeps; that solid decides what leaves the universe. Cost: that of the sweeps of all labels' solids.
+LabelMap sweep(const LabelMap& map, std::span<const Motion> motions, Leaving leaving = Leaving::error,
+               const Work& work = {});
+/// The sweep over motions_along(the solid of all labels but 0, path, step).
+LabelMap sweep(const LabelMap& map, const Path& path, double step = 1, Leaving leaving = Leaving::error,
+               const Work& work = {});
+
 /// The motions of a path at path.times(bounding box of the solid, step); one motion for the empty solid. Throws
 /// Error(bad_argument) as path.times() does.
 std::vector<Motion> motions_along(const Octree& octree, const Path& path, double step = 1);
@@ -48,5 +59,14 @@ struct RoomForMotions {
 /// universe that holds it by all motions, and the motions about that place: moves into one universe for all of them.
 RoomForMotions room_for(const Octree& octree, std::span<const Motion> motions, Leaving leaving = Leaving::error,
                         const Work& work = {});
+
+/// A label map and motions of it in one universe.
+struct RoomForLabels {
+  LabelMap labels;
+  std::vector<Motion> motions;
+};
+/// The same for label maps; the solid of all labels but 0 decides.
+RoomForLabels room_for(const LabelMap& map, std::span<const Motion> motions, Leaving leaving = Leaving::error,
+                       const Work& work = {});
 
 }  // namespace blackleaf

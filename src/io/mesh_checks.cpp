@@ -110,6 +110,7 @@ void check_ply_binary(const InputFile& file, const std::string& name, const PlyH
         if (!bytes.skip(size)) fail(i);
       }
   }
+  check_ply_end(header, bytes.left(), name);
 }
 
 void check_ply(const InputFile& file, const std::string& name) {

@@ -204,7 +204,11 @@ class PcdReader {
       }
       done += part;
     }
-    // Some bytes of padding do no harm; another point is one that the header has forgotten.
+    check_end();
+  }
+
+  // Some bytes of padding do no harm; another point is one that the header has forgotten.
+  void check_end() const {
     if (bytes_.left() >= stride_)
       refuse(name_,
              fmt::format("its header tells of {} points but there are {} bytes behind them", points_, bytes_.left()),
@@ -230,6 +234,7 @@ class PcdReader {
     std::vector<std::uint8_t> from(static_cast<std::size_t>(packed)), to(static_cast<std::size_t>(unpacked));
     if (bytes_.read(from) < from.size() || !lzf_unpack(from, to))
       refuse(name_, "its compressed points cannot be unpacked", kDamaged);
+    check_end();
     sink_.reached(bytes_.position());
     for (std::uint64_t i = 0; i < points_; ++i) {
       Eigen::Vector3d point;

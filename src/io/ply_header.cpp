@@ -70,4 +70,22 @@ std::optional<PlyHeader> read_ply_header(const InputFile& file, const std::strin
   return parse(head, name, head.size() == file.size());
 }
 
+void check_ply_end(const PlyHeader& header, std::uint64_t left, const std::string& name) {
+  const PlyElement* last = nullptr;
+  std::uint64_t size = 0;  // of one of the last element that is there
+  for (const PlyElement& element : header.elements) {
+    std::uint64_t sum = 0;
+    for (const PlyProperty& property : element.properties)
+      sum += property.is_list() ? property.count_size() + std::uint64_t{3} * property.size() : property.size();
+    if (element.count == 0 || sum == 0) continue;
+    last = &element;
+    size = sum;
+  }
+  if (last == nullptr || left < size) return;
+  refuse(
+      name,
+      fmt::format("its header tells of {} of \"{}\" but there are {} bytes behind them", last->count, last->name, left),
+      "mend the numbers in its header");
+}
+
 }  // namespace blackleaf::detail

@@ -39,4 +39,8 @@ struct PlyHeader {
 /// The counts are not to be trusted. Requires: file.is_regular().
 std::optional<PlyHeader> read_ply_header(const InputFile& file, const std::string& name);
 
+/// Throws Error(bad_input) if the `left` bytes behind the elements of a binary file hold one more of the last element;
+/// a list in it counts as one of three, a triangle. Fewer are padding and do no harm.
+void check_ply_end(const PlyHeader& header, std::uint64_t left, const std::string& name);
+
 }  // namespace blackleaf::detail

@@ -228,11 +228,13 @@ void read_ply_points(const InputFile& file, const std::string& name, PointSink& 
     const bool lines = std::none_of(header->elements.begin(), header->elements.end(),
                                     [](const PlyElement& element) { return element.properties.empty(); });
     if (lines) require_end(bytes, name, "the last element that its header tells of");
-  } else if (header->format == "binary_little_endian" || header->format == "binary_big_endian")
+  } else if (header->format == "binary_little_endian" || header->format == "binary_big_endian") {
     read_with(BinaryVertices(bytes, header->format == "binary_big_endian", name, sink), *header);
-  else
+    check_ply_end(*header, bytes.left(), name);
+  } else {
     refuse(name, fmt::format("its format is \"{}\", which is unknown", header->format.substr(0, 40)),
            "use ascii, binary_little_endian or binary_big_endian");
+  }
 }
 
 }  // namespace blackleaf::detail

@@ -18,6 +18,7 @@
 #include "neighbourhood.h"
 #include "octree/brick.h"
 #include "octree/produce.h"
+#include "sweep_into.h"
 #include "sweep_kernel.h"
 
 namespace blackleaf {
@@ -337,32 +338,38 @@ std::optional<detail::Extent> farthest(const Octree& octree, const Box& box, std
   return all;
 }
 
-detail::TargetUniverse universe_for(const Octree& octree, const Box& box, std::span<const Motion> motions,
-                                    Leaving leaving) {
+}  // namespace
+
+detail::TargetUniverse detail::universe_for(const Octree& octree, const Box& box, std::span<const Motion> motions,
+                                            Leaving leaving) {
   if (leaving != Leaving::clip)
     if (const auto extent = farthest(octree, box, motions))
       return detail::target_universe(octree.depth(), *extent, leaving, {"the solid on its way", "change the path"});
   return {octree.depth(), {}};
 }
 
-Octree sweep_into(const detail::TargetUniverse& target, const Octree& octree, const Box& box,
-                  std::span<const Motion> motions, const Work& work) {
+Octree detail::sweep_into(const TargetUniverse& target, const Octree& octree, const Box& box,
+                          std::span<const Motion> motions, const Work& work) {
   std::vector<FixedMotion> fixed;
   fixed.reserve(motions.size());
   for (const Motion& motion : motions)
     if (motion.translation().norm() <= FixedMotion::kMaxTranslation)  // else clipped away
       fixed.push_back(FixedMotion(motion).shifted(target.offset));
   const MotionGroups groups(fixed, box, target.depth);
-  return detail::produce(SweepProducer(groups, octree, box, target.depth), target.depth,
-                         detail::grown_frame(octree.frame(), target), work);
+  return produce(SweepProducer(groups, octree, box, target.depth), target.depth, grown_frame(octree.frame(), target),
+                 work);
 }
 
-}  // namespace
+void detail::move_with(const TargetUniverse& target, std::vector<Motion>& motions) {
+  const Eigen::Vector3d offset(static_cast<double>(target.offset[0]), static_cast<double>(target.offset[1]),
+                               static_cast<double>(target.offset[2]));
+  for (Motion& motion : motions) motion = motion.about(offset);
+}
 
 Octree sweep(const Octree& octree, std::span<const Motion> motions, Leaving leaving, const Work& work) {
   const std::optional<Box> box = bounding_box(octree);
   if (!box) return octree;
-  return sweep_into(universe_for(octree, *box, motions, leaving), octree, *box, motions, work);
+  return detail::sweep_into(detail::universe_for(octree, *box, motions, leaving), octree, *box, motions, work);
 }
 
 Octree sweep(const Octree& octree, const Path& path, double step, Leaving leaving, const Work& work) {
@@ -381,13 +388,11 @@ RoomForMotions room_for(const Octree& octree, std::span<const Motion> motions, L
   RoomForMotions room{octree, {motions.begin(), motions.end()}};
   const std::optional<Box> box = bounding_box(octree);
   if (!box) return room;
-  const detail::TargetUniverse target = universe_for(octree, *box, motions, leaving);
+  const detail::TargetUniverse target = detail::universe_for(octree, *box, motions, leaving);
   if (target.depth == octree.depth()) return room;
   const std::array<Motion, 1> rest;
-  room.octree = sweep_into(target, octree, *box, rest, work);
-  const Eigen::Vector3d offset(static_cast<double>(target.offset[0]), static_cast<double>(target.offset[1]),
-                               static_cast<double>(target.offset[2]));
-  for (Motion& motion : room.motions) motion = motion.about(offset);
+  room.octree = detail::sweep_into(target, octree, *box, rest, work);
+  detail::move_with(target, room.motions);
   return room;
 }
 

@@ -5,7 +5,9 @@
 #include <fstream>
 #include <thread>
 
+#include "blackleaf/curve.h"
 #include "blackleaf/implicit.h"
+#include "blackleaf/label_map.h"
 #include "blackleaf/measures.h"
 #include "blackleaf/octree_file.h"
 #include "blackleaf/sweep.h"
@@ -69,6 +71,41 @@ TEST_F(PathCommands, SweepRefusesInOneLine) {
   refused({"sweep", "-", "--path", "-", "-o", "s.octree"}, "both - for standard input");
   refused({"sweep", "o.octree", "--path", "slide.json", "-o", "s.octree", "--label", "3"},
           "holds one solid without labels");
+}
+
+TEST_F(PathCommands, SweepAndAnimateKeepLabels) {
+  const Octree one = box(4, {2, 2, 2}, {5, 5, 5}), two = box(4, {5, 2, 2}, {7, 4, 4});
+  LabelMapBuilder builder(4);
+  for (std::uint64_t i = 0; i < 4096; ++i) {
+    const auto at = curve::voxel(4, i);
+    builder.add(1, one.contains(at.x, at.y, at.z) ? 3 : two.contains(at.x, at.y, at.z) ? 8 : 0);
+  }
+  const LabelMap map = builder.finish();
+  save(map, folder() / "l.octree");
+  write("slide.json", kSlide);
+  const Path path({{0, {0, 0, 0}, Eigen::Quaterniond::Identity()}, {2, {10, 0, 4}, Eigen::Quaterniond::Identity()}});
+  const Result told = done({"sweep", "l.octree", "--path", "slide.json", "-o", "s.octree", "--clip"});
+  EXPECT_NE(told.out.find("2 labels"), std::string::npos) << told.out;
+  EXPECT_EQ(load(folder() / "s.octree").labels, sweep(map, path, 1, Leaving::clip));
+  // One label as a solid.
+  done({"sweep", "l.octree", "--path", "slide.json", "-o", "t.octree", "--label", "3"});
+  EXPECT_FALSE(load(folder() / "t.octree").labels);
+  EXPECT_TRUE(load(folder() / "t.octree").octree == sweep(one, path));
+  refused({"sweep", "l.octree", "--path", "slide.json", "-o", "u.octree"}, "1 voxel beyond x = 16");
+  refused({"sweep", "l.octree", "--path", "slide.json", "-o", "u.octree", "--label", "4"}, "it has 2 labels: 3, 8");
+  // Frames of octrees have all labels too; grown, in one universe.
+  done({"animate", "l.octree", "--path", "slide.json", "-o", "f%d.octree", "--frames", "3", "--clip"});
+  EXPECT_EQ(load(folder() / "f2.octree").labels, move(map, path.motion_at(1)));
+  EXPECT_EQ(load(folder() / "f3.octree").labels, move(map, path.motion_at(2), Leaving::clip));
+  done({"animate", "l.octree", "--path", "slide.json", "-o", "g%d.octree", "--frames", "3", "--grow"});
+  const LabelMap first = load(folder() / "g1.octree").labels.value(),
+                 last = load(folder() / "g3.octree").labels.value();
+  EXPECT_EQ(first.depth(), 5);
+  EXPECT_EQ(last, translate(first, {10, 0, 4}));
+  refused({"animate", "l.octree", "--path", "slide.json", "-o", "h%d.octree", "--frames", "3"},
+          "1 voxel beyond x = 16");
+  done({"animate", "l.octree", "--path", "slide.json", "-o", "o%d.octree", "--frames", "1", "--label", "8"});
+  EXPECT_TRUE(load(folder() / "o1.octree").octree == two);
 }
 
 TEST_F(PathCommands, AnimateWritesOctreesAlongThePath) {

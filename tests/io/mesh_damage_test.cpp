@@ -75,6 +75,14 @@ TEST_F(MeshDamage, BinaryPlyCutAnywhere) {
   EXPECT_GT(triangles("a.ply", whole), 0u);
 }
 
+TEST_F(MeshDamage, BinaryPlyWithMoreThanItTellsOf) {
+  const std::string whole = written("whole.ply");
+  const std::size_t faces = triangles("a.ply", whole);
+  EXPECT_EQ(triangles("a.ply", whole + std::string(12, '\0')), faces) << "padding, shorter than a triangle";
+  refuse("a.ply", whole + std::string(13, '\0'), {"\"face\" but there are 13 bytes behind them"});
+  refuse("a.ply", whole + whole, {"mend the numbers in its header"});
+}
+
 TEST_F(MeshDamage, TextPly) {
   const std::string whole = kPlyHeader + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   EXPECT_EQ(triangles("a.ply", whole), 1u);

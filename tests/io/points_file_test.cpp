@@ -177,6 +177,9 @@ TEST_F(PointsFile, PlyWithRowsOfOneLength) {
   EXPECT_EQ(read("p.ply", head + body), expected);
   for (std::size_t cut : {std::size_t{0}, std::size_t{1}, std::size_t{24}, body.size() / 2, body.size() - 1})
     refused("p.ply", head + body.substr(0, cut), {"70000 of \"vertex\"", fmt::format("there are {}", cut / 24)});
+  EXPECT_EQ(read("p.ply", head + body + std::string(23, '\0')), expected) << "padding";
+  refused("p.ply", head + body + std::string(24, '\0'), {"70000 of \"vertex\" but there are 24 bytes behind them"});
+  refused("p.ply", head + body + body, {"mend the numbers in its header"});
 }
 
 TEST_F(PointsFile, PlyThatLiesIsRefused) {
@@ -328,6 +331,11 @@ TEST_F(PointsFile, PcdInItsThreeForms) {
   refused("p.pcd", compressed(packed_size - 1, unpacked_size), {"cannot be unpacked"});
   refused("p.pcd", compressed(packed_size, unpacked_size + 1), {"tells of 500 points of 30 bytes, but of 15001"});
   refused("p.pcd", compressed(20, unpacked_size), {"20 bytes cannot hold"});
+  // Padding does no harm, what could be another point does.
+  for (const std::string& whole : {pcd_head(kPoints, "binary") + rows, compressed(packed_size, unpacked_size)}) {
+    check(whole + std::string(29, '\0'));
+    refused("p.pcd", whole + std::string(30, '\0'), {"tells of 500 points but there are 30 bytes behind them"});
+  }
 }
 
 TEST_F(PointsFile, PcdHeadersThatLieAreRefused) {

@@ -4,8 +4,7 @@
 #include "blackleaf/error.h"
 #include "blackleaf/label_map.h"
 #include "blackleaf/move.h"
-#include "reference/dense_labels.h"
-#include "reference/dense_motion.h"
+#include "reference/moved_labels.h"
 
 namespace blackleaf {
 namespace {
@@ -22,28 +21,13 @@ LabelMap map_of(const DenseLabels& grid, Frame frame = {}) {
   return LabelMap(grid.runs(), grid.depth, std::move(frame));
 }
 
-/// By the definition: the largest label of the closed voxels that hold the centre, moved back.
-DenseLabels moved(const DenseLabels& grid, const FixedMotion& motion) {
-  DenseLabels result(grid.depth);
-  const int side = grid.side();
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x)
-        reference::for_each_touched(motion, {x, y, z}, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
-          if (std::min({i, j, k}) < 0 || std::max({i, j, k}) >= side) return;
-          auto& label = result.at(x, y, z);
-          label = std::max(label, grid.at(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)));
-        });
-  return result;
-}
-
 TEST(MoveLabels, AgreesWithTheDefinition) {
   std::mt19937 random(1992);
   for (int trial = 0; trial < 800; ++trial) {
     SCOPED_TRACE(trial);
     const DenseLabels grid = random_grid(1 + trial % 5, random);
     const Motion motion = reference::random_motion(grid.depth, random);
-    const LabelMap expected = map_of(moved(grid, FixedMotion(motion)));
+    const LabelMap expected = map_of(reference::move(grid, FixedMotion(motion)));
     for (const int threads : {1, 2, 7})
       ASSERT_EQ(move(map_of(grid), motion, Leaving::clip, {.threads = threads, .progress = {}}), expected) << threads;
   }

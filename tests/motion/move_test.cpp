@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iostream>
 
 #include "blackleaf/error.h"
 #include "blackleaf/set_operations.h"
@@ -11,11 +10,13 @@
 #include "motion/move_producer.h"
 #include "octree/produce.h"
 #include "reference/dense_motion.h"
+#include "reference/every_kernel.h"
 
 namespace blackleaf {
 namespace {
 
 using reference::DenseGrid;
+using reference::EveryKernel;
 constexpr double kDegree = M_PI / 180;
 
 TEST(Move, AgreesWithTheDenseGrid) {
@@ -43,32 +44,6 @@ TEST(Move, DepthSixAndThreads) {
       ASSERT_TRUE(moved == move(octree, motion, Leaving::clip, {.threads = threads, .progress = {}}));
   }
 }
-
-// Puts every kernel that there is in force in turn, and the best again in the end.
-class EveryKernel {
- public:
-  EveryKernel() {
-    EXPECT_EQ(kernels_.back(), "scalar");
-    for (const std::string wanted : {"AVX2", "AVX3"})
-      if (std::ranges::find(kernels_, wanted) == kernels_.end())
-        std::cout << "the kernel " << wanted << " is not available on this machine, so it is not tested\n";
-  }
-  ~EveryKernel() { detail::use_centre_kernel(""); }
-  EveryKernel(const EveryKernel&) = delete;
-  EveryKernel& operator=(const EveryKernel&) = delete;
-
-  template <class Test>
-  void run(Test test) const {
-    for (const std::string& kernel : kernels_) {
-      SCOPED_TRACE(kernel);
-      detail::use_centre_kernel(kernel);
-      test();
-    }
-  }
-
- private:
-  std::vector<std::string> kernels_ = detail::centre_kernels();
-};
 
 TEST(Move, EveryKernelGivesTheSame) {
   const EveryKernel kernels;

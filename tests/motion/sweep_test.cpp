@@ -8,6 +8,7 @@
 #include "blackleaf/set_operations.h"
 #include "motion/motion_groups.h"
 #include "reference/dense_motion.h"
+#include "reference/every_kernel.h"
 #include "reference/paths.h"
 
 namespace blackleaf {
@@ -30,6 +31,19 @@ DenseGrid dense_union(const DenseGrid& grid, const std::vector<Motion>& motions)
     for (std::size_t i = 0; i < all.voxels.size(); ++i) all.voxels[i] = all.voxels[i] || moved.voxels[i];
   }
   return all;
+}
+
+TEST(Sweep, EveryKernelGivesTheSame) {
+  const reference::EveryKernel kernels;
+  std::mt19937 random(2086);
+  for (int trial = 0; trial < 150; ++trial) {
+    SCOPED_TRACE(trial);
+    const DenseGrid grid = reference::random_solid(2 + trial % 4, random);
+    std::vector<Motion> motions;
+    for (int count = 1 + trial % 5; count > 0; --count) motions.push_back(reference::random_motion(grid.depth, random));
+    const Octree octree = reference::octree(grid), expected = reference::octree(dense_union(grid, motions));
+    kernels.run([&] { EXPECT_TRUE(sweep(octree, motions, Leaving::clip) == expected); });
+  }
 }
 
 TEST(Sweep, EqualsTheDenseUnionOfAnyMotions) {

@@ -11,7 +11,9 @@
 #include "blackleaf/error.h"
 #include "blackleaf/measures.h"
 #include "blackleaf/moving_object.h"
+#include "motion/move_general.h"
 #include "reference/dense_grid.h"
+#include "reference/every_kernel.h"
 
 namespace blackleaf::papers::wa87 {
 namespace {
@@ -160,14 +162,39 @@ TEST(Wa87Move, EqualsTheProductAndTheDefinition) {
   EXPECT_GT(left, 10);
 }
 
+// The printed algorithm is one witness for every kernel and every number of threads; move_by_look_up is the product's
+// general engine also where relabelling alone would do.
+TEST(Wa87Move, EqualsTheProductWithEveryKernelAndThreadCount) {
+  const reference::EveryKernel kernels;
+  std::mt19937 random(16);
+  int compared = 0;
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(i);
+    const int depth = 3 + i % 4;
+    const Octree octree = reference::octree(random_inner_solid(depth, random));
+    const Motion motion = random_motion(depth, std::exp2(depth) * 0.1, random);
+    const auto papers = unless_it_leaves([&] { return move(Tree(octree), FixedMotion(motion)).octree(); });
+    if (!papers) continue;
+    ++compared;
+    kernels.run([&] {
+      EXPECT_TRUE(blackleaf::detail::move_by_look_up(octree, motion, Leaving::error) == *papers);
+      for (const int threads : {1, 2, 5})
+        EXPECT_TRUE(blackleaf::move(octree, motion, Leaving::error, {threads, {}}) == *papers) << threads;
+    });
+  }
+  EXPECT_GT(compared, 250);
+}
+
 TEST(Wa87Move, LargerSolidsEqualTheProduct) {
+  const reference::EveryKernel kernels;
   std::mt19937 random(12);
   for (int i = 0; i < 12; ++i) {
     SCOPED_TRACE(i);
     const int depth = 7;
     const Octree octree = blackleaf::ball(depth, {60 + 0.5 * i, 64, 70}, 20 + i);
     const Motion motion = random_motion(depth, 10, random);
-    EXPECT_EQ(move(Tree(octree), FixedMotion(motion)).octree(), blackleaf::move(octree, motion));
+    const Octree papers = move(Tree(octree), FixedMotion(motion)).octree();
+    kernels.run([&] { EXPECT_EQ(blackleaf::move(octree, motion), papers); });
   }
 }
 
