@@ -76,7 +76,7 @@ def demands():
         yield f"{key}: of a level", lambda f, k=key: f.ours(k), "at most", 4.3
     key = "move-memory/1024"
     yield f"{key}: of source and target", lambda f, k=key: 1 / f.times(k, "source+target"), "at most", 1.1
-    yield "sweep/512/t1: each move, all united", lambda f: f.times("sweep/512/t1", "moves"), "at least", 4
+    yield "sweep/512/t1: each move, all united", lambda f: f.times("sweep/512/t1", "moves"), "at least", 3
     yield "svg/1024: MB/s", lambda f: f.ours("svg-bytes/1024") / f.ours("svg/1024") / MEGABYTE, "at least", 100
     yield "curve/decode: ns", lambda f: f.ours("curve/decode") / NANOSECOND, "at most", 12
     yield "curve/encode: ns", lambda f: f.ours("curve/encode") / NANOSECOND, "at most", 12

@@ -26,47 +26,6 @@ MovedBackCentres::MovedBackCentres(const FixedMotion& motion) : motion_(motion) 
     for (const std::int64_t entry : motion.inverse_rotation[i]) reach_[i] += std::abs(entry);
 }
 
-SourcePoint MovedBackCentres::at(std::int64_t x2, std::int64_t y2, std::int64_t z2) const {
-  SourcePoint q;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto& a = motion_.inverse_rotation[i];
-    q[i] = a[0] * x2 + a[1] * y2 + a[2] * z2 + 2 * motion_.inverse_translation[i];
-  }
-  return q;
-}
-
-SourceBox MovedBackCentres::box(const Voxels& voxels) const {
-  const auto &low = voxels.low, &high = voxels.high;
-  const SourcePoint middle =
-      at(std::int64_t{low[0]} + high[0] + 1, std::int64_t{low[1]} + high[1] + 1, std::int64_t{low[2]} + high[2] + 1);
-  SourceBox box;
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::int64_t half = 0;
-    for (std::size_t j = 0; j < 3; ++j) half += std::abs(motion_.inverse_rotation[i][j]) * (high[j] - low[j]);
-    box.low[i] = middle[i] - half;
-    box.high[i] = middle[i] + half;
-  }
-  return box;
-}
-
-SourceBox MovedBackCentres::box(const Cube& cube) const {
-  const SourcePoint middle = at(2 * std::int64_t{cube.x} + cube.side(), 2 * std::int64_t{cube.y} + cube.side(),
-                                2 * std::int64_t{cube.z} + cube.side());
-  SourceBox box;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t half = reach_[i] * (cube.side() - 1);
-    box.low[i] = middle[i] - half;
-    box.high[i] = middle[i] + half;
-  }
-  return box;
-}
-
-SourcePoint MovedBackCentres::step(std::size_t axis) const {
-  SourcePoint step;
-  for (std::size_t i = 0; i < 3; ++i) step[i] = 2 * motion_.inverse_rotation[i][axis];
-  return step;
-}
-
 MotionGroups::MotionGroups(const std::vector<FixedMotion>& motions, const Box& box, int target_depth) {
   const double side = std::ldexp(1.0, target_depth);
   for (const FixedMotion& motion : motions) {

@@ -69,7 +69,9 @@ class SweptVoxels {
     for (std::int64_t z = bricks.low[2] >> 1; z <= bricks.high[2] >> 1; ++z)
       for (std::int64_t y = bricks.low[1] >> 1; y <= bricks.high[1] >> 1; ++y)
         for (std::int64_t x = bricks.low[0] >> 1; x <= bricks.high[0] >> 1; ++x) {
-          source.bricks(source.index(x, y, z), of_cell.data());
+          const std::size_t cell = source.index(x, y, z);
+          if ((source.black(cell) | source.gray(cell)) == 0) continue;
+          source.bricks(cell, of_cell.data());
           for (unsigned octant = 0; octant < 8; ++octant) {
             const std::int64_t u = 2 * x + (octant & 1), v = 2 * y + (octant >> 1 & 1), w = 2 * z + (octant >> 2);
             if (of_cell[octant] == 0 || u < bricks.low[0] || u > bricks.high[0] || v < bricks.low[1] ||
@@ -101,18 +103,19 @@ class SweptVoxels {
   std::uint64_t covered(const MovedBackCentres& motion, const Cube& cube) const {
     // The box of a brick's centres is less than 3 sqrt(3) + 1 = 6.2 voxels long: one that meets the window lies within
     // its margins, and another sees white only.
-    const SourceBox box = motion.box(cube);
+    const SourcePoint first = motion.centre(cube.x, cube.y, cube.z);
+    const SourceBox box = motion.brick_box(first);
     for (std::size_t i = 0; i < 3; ++i)
       if (box.high[i] < (corner_[i] + kMargin) << kSourceBits || box.low[i] > (corner_[i] + kSide - kMargin)
                                                                                   << kSourceBits)
         return 0;
-    const SourcePoint first = motion.centre(cube.x, cube.y, cube.z);
     constexpr int kCut = kSourceBits - detail::kSweepFraction;
     detail::CutCentres centres;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i)
       centres.first[i] = static_cast<std::uint32_t>((first[i] - (corner_[i] << kSourceBits)) >> kCut);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        centres.step[axis][i] = static_cast<std::uint32_t>(motion.step(axis)[i] >> kCut);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const SourcePoint step = motion.step(axis);
+      for (std::size_t i = 0; i < 3; ++i) centres.step[axis][i] = static_cast<std::uint32_t>(step[i] >> kCut);
     }
     if (const auto bits = detail::covered_voxels(centres, rows_)) return *bits;
     std::uint64_t bits = 0;
@@ -260,7 +263,8 @@ class SweepProducer {
     }
     // Cells without any of the source are white by all motions. The parent's candidate, cut likewise, has the rest:
     // what a half's box has beyond the whole's is out of the solid's reach.
-    CellRange cells = cells_of(groups_.box(group, cube), cube.level), around;
+    const MotionGroups::Ends ends = groups_.ends(group, cube);
+    CellRange cells = cells_of(MotionGroups::hull(group, ends), cube.level), around;
     bool wide = false;
     for (std::size_t i = 0; i < 3; ++i) {
       cells.low[i] = std::max<std::int64_t>(cells.low[i], box_.min[i] >> cube.level);
@@ -290,12 +294,12 @@ class SweepProducer {
     if (candidate.source.colour(cells) == Colour::white)
       task.candidates.pop_back();
     else
-      task.black = blackens(group.first, cube, candidate) || (!group.single() && blackens(group.last, cube, candidate));
+      task.black = blackens(ends.first, cube, candidate) || (!group.single() && blackens(ends.last, cube, candidate));
   }
 
-  // True if a motion alone makes the whole node black.
-  bool blackens(std::uint32_t motion, const Cube& cube, const Candidate& candidate) const {
-    const CellRange cells = cells_of(groups_.motion(motion).box(cube), cube.level);
+  // True if a motion by which the node's centres come from a box makes the whole node black by itself.
+  static bool blackens(const SourceBox& box, const Cube& cube, const Candidate& candidate) {
+    const CellRange cells = cells_of(box, cube.level);
     for (std::size_t i = 0; i < 3; ++i)
       if (cells.low[i] < candidate.cells.low[i] || cells.high[i] > candidate.cells.high[i]) return false;
     return candidate.source.colour(cells) == Colour::black;
