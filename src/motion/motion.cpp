@@ -163,18 +163,21 @@ void check_rotation(const Eigen::Matrix3d& m) {
   if (!m.allFinite()) refuse_matrix("it has entries that are not finite numbers", "write finite numbers");
   const Eigen::Vector3d lengths = m.colwise().norm();
   const std::string rigid = "give a rotation and a translation only; scaling and shearing are no motions";
-  if (!((lengths.array() - 1).abs().maxCoeff() <= kTolerance / 2))
-    refuse_matrix(
-        "it scales: its columns have lengths " + text(lengths[0]) + ", " + text(lengths[1]) + ", " + text(lengths[2]),
-        rigid);
+  const bool scales = !((lengths.array() - 1).abs().maxCoeff() <= kTolerance / 2);
+  std::string angle;  // of the first two columns that are not square to each other
   for (int i = 0; i < 3; ++i)
     for (int j = i + 1; j < 3; ++j) {
-      const double cosine = m.col(i).dot(m.col(j));
-      if (std::abs(cosine) > kTolerance)
-        refuse_matrix("it shears: columns " + std::to_string(i + 1) + " and " + std::to_string(j + 1) + " meet at " +
-                          text(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / M_PI) + " degrees",
-                      rigid);
+      const double cosine = m.col(i).dot(m.col(j)) / (lengths[i] * lengths[j]);  // not a number for no lengths
+      if (angle.empty() && std::abs(cosine) > kTolerance)
+        angle = "columns " + std::to_string(i + 1) + " and " + std::to_string(j + 1) + " meet at " +
+                text(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / M_PI) + " degrees";
     }
+  if (scales)
+    refuse_matrix(std::string(angle.empty() ? "it scales" : "it scales and shears") + ": its columns have lengths " +
+                      text(lengths[0]) + ", " + text(lengths[1]) + ", " + text(lengths[2]) +
+                      (angle.empty() ? "" : ", and " + angle),
+                  rigid);
+  if (!angle.empty()) refuse_matrix("it shears: " + angle, rigid);
   if (m.determinant() > 0) return;
   const std::string axes = reversed_axes(m);
   if (axes.empty())

@@ -147,6 +147,10 @@ TEST(Motion, RefusesWhatIsNoMotion) {
   expect([&] { Motion(m, origin); }, "it shears: columns 1 and 2 meet at 89.427 degrees; give a rotation");
   expect([&] { Motion(1.25 * Matrix3d::Identity(), origin); },
          "it scales: its columns have lengths 1.25, 1.25, 1.25; give a rotation and a translation only; scaling and");
+  m = Matrix3d::Identity();
+  m(0, 1) = 0.1;
+  expect([&] { Motion(m, origin); },
+         "it scales and shears: its columns have lengths 1, 1.00499, 1, and columns 1 and 2 meet at 84.2894 degrees");
   expect([&] { Motion(Matrix3d::Zero(), origin); }, "lengths 0, 0, 0");
   expect([&] { Motion(Matrix3d::Constant(1e300), origin); }, "scales");
   expect([&] { Motion(Eigen::Vector3d(1, -1, 1).asDiagonal(), origin); },
