@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
 
 #include "blackleaf/error.h"
 #include "blackleaf/set_operations.h"
@@ -120,8 +125,11 @@ TEST(Move, NothingIsMadeThatDoesNotStay) {
 void expect_as_defined(const Octree& octree, const Motion& motion, const std::vector<Eigen::Vector3d>& places,
                        std::mt19937& random) {
   const FixedMotion fixed(motion);
-  const Octree moved = move(octree, motion, Leaving::clip);
+  const Octree moved = move(octree, motion, Leaving::clip, {.threads = 1, .progress = {}});
   reference::expect_valid(moved);
+  for (const int threads : {2, 7})
+    EXPECT_TRUE(move(octree, motion, Leaving::clip, {.threads = threads, .progress = {}}) == moved) << threads;
+  EveryKernel().run([&] { EXPECT_TRUE(detail::move_by_look_up(octree, motion, Leaving::clip) == moved); });
   std::uniform_int_distribution<int> near(-3, 3);
   int black = 0, white = 0;
   for (const Eigen::Vector3d& place : places) {
@@ -228,6 +236,56 @@ TEST(Move, LessThanAVoxelOutIsStillOut) {
     EXPECT_NE(std::string(error.what()).find("0.25 voxels beyond x = 8"), std::string::npos) << error.what();
   }
   EXPECT_TRUE(move(full, Motion::translation({0.25, 0, 0}), Leaving::clip) == full);
+}
+
+TEST(Move, SingleVoxelsAtCornersLeaveByLittle) {
+  // Out on each side that the corner has, by less than a voxel: an error that names the side, from beyond 2^-16 on.
+  for (int depth = 1; depth <= 4; ++depth)
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::int32_t last = (1 << depth) - 1;
+      std::array<std::int32_t, 3> low{}, high{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = corner >> i & 1 ? last : 0;
+        high[i] = low[i] + 1;
+      }
+      const Octree speck = box(depth, low, high);
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool up = (corner >> axis & 1) != 0;
+        const std::string side =
+            (up ? "beyond " : "below ") + std::string(1, "xyz"[axis]) + " = " + std::to_string(up ? last + 1 : 0);
+        for (const double by : {0.75, 0.5, 0.25, 0x1p-15, 0x1p-17}) {
+          SCOPED_TRACE(testing::Message() << depth << ' ' << corner << ' ' << side << ' ' << by);
+          const Motion motion = Motion::translation((up ? by : -by) * Eigen::Vector3d::Unit(axis));
+          const Octree clipped = move(speck, motion, Leaving::clip), grown = move(speck, motion, Leaving::grow);
+          EXPECT_EQ(clipped.is_empty(), by > 0.5);
+          EXPECT_EQ(grown.depth(), by > 0x1p-16 ? depth + 1 : depth);
+          EXPECT_EQ(volume(grown), by == 0.5 ? 2u : 1u) << "a centre on a face is in both voxels";
+          try {
+            EXPECT_TRUE(move(speck, motion) == speck);
+            EXPECT_LT(by, 0x1p-16);
+          } catch (const Error& error) {
+            EXPECT_GT(by, 0x1p-16);
+            EXPECT_EQ(error.code(), ErrorCode::out_of_universe);
+            EXPECT_NE(std::string(error.what()).find(side), std::string::npos) << error.what();
+          }
+        }
+      }
+    }
+  // Turned by 45 degrees a full universe leaves on four sides alike.
+  for (int depth = 1; depth <= 4; ++depth) {
+    const double half = 1 << (depth - 1);
+    try {
+      move(Octree(depth, Colour::black),
+           Motion::rotation_degrees({0, 0, 1}, 45).about(Eigen::Vector3d::Constant(half)));
+      FAIL();
+    } catch (const Error& error) {
+      std::array<char, 16> out{};
+      std::snprintf(out.data(), out.size(), "%.6f", (std::sqrt(2) - 1) * half);
+      for (const std::string side : {" below x = 0", " beyond x = ", " below y = 0", " beyond y = "})
+        EXPECT_NE(std::string(error.what()).find(out.data() + (" voxels" + side)), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).find("z ="), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(Move, QuarterTurnsAreLosslessAndFormAGroup) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "motion/centre_kernel.h"
@@ -17,6 +18,8 @@ class EveryKernel {
  public:
   EveryKernel() {
     EXPECT_EQ(kernels_.back(), "scalar");
+    static bool told = false;
+    if (std::exchange(told, true)) return;
     for (const std::string wanted : {"AVX2", "AVX3"})
       if (std::ranges::find(kernels_, wanted) == kernels_.end())
         std::cout << "the kernel " << wanted << " is not available on this machine, so it is not tested\n";
