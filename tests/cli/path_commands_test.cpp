@@ -78,7 +78,7 @@ TEST_F(PathCommands, SweepAndAnimateKeepLabels) {
   LabelMapBuilder builder(4);
   for (std::uint64_t i = 0; i < 4096; ++i) {
     const auto at = curve::voxel(4, i);
-    builder.add(1, one.contains(at.x, at.y, at.z) ? 3 : two.contains(at.x, at.y, at.z) ? 8 : 0);
+    builder.add(1, one.contains(at.x, at.y, at.z) ? 3u : two.contains(at.x, at.y, at.z) ? 8u : 0u);
   }
   const LabelMap map = builder.finish();
   save(map, folder() / "l.octree");
