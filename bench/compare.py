@@ -24,7 +24,7 @@ RESULTS = os.path.join(ROOT, "bench", "results.json")
 TABLES = os.path.join(ROOT, "docs", "PERFORMANCE.md")
 PROGRAM = os.path.join(ROOT, "build", "bench", "bench", "blackleaf_bench")
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
-COUNTERS = ("bytes", "voxels", "ratio")  # what else than seconds a benchmark may report
+COUNTERS = ("bytes", "voxels", "ratio", "s")  # what a benchmark may report itself; s are seconds
 
 
 def fail(message):
@@ -110,8 +110,8 @@ def measure(program, key, contenders, repetitions, min_time):
         value, unit = value_of(run, threads)
         values.setdefault(contender[1], []).append(value)
     medians = {who: float(f"{statistics.median(v):.4g}") for who, v in sorted(values.items(), key=lambda item: contenders.index(item[0]))}
-    ours = medians.pop("ours")
-    return {"ours": ours, "peers": medians, "unit": unit, "threads": threads}
+    result = {who: medians.pop(who) for who in ("ours", "ours_p95") if who in medians}
+    return {**result, "peers": medians, "unit": unit, "threads": threads}
 
 
 def ratio(value, ours):
@@ -123,7 +123,8 @@ def print_rows(key, result):
     if not result["peers"]:
         print(f"{key:24} {ours:>14}")
     for who, value in result["peers"].items():
-        print(f"{key:24} {ours:>14}  {who:12} {tables.shown(value, result['unit']):>14} {ratio(value, result['ours']):>10}")
+        beside = tables.beside(result, who)
+        print(f"{key:24} {tables.shown(beside, result['unit']):>14}  {who:12} {tables.shown(value, result['unit']):>14} {ratio(value, beside):>10}")
     sys.stdout.flush()
 
 

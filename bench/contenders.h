@@ -54,6 +54,7 @@ void add_combine();
 void add_offset();
 void add_sweep();
 void add_interference();
+void add_query();
 void add_drawing();
 void add_curve();
 void add_file();
@@ -64,5 +65,6 @@ void add_openvdb();
 void add_openvdb_translate();
 void add_openvdb_sets();
 void add_octomap();
+void add_fcl();
 
 }  // namespace blackleaf::bench

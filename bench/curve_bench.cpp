@@ -1,6 +1,5 @@
 // curve/decode, curve/encode: node number to voxel and back on the curve of order 10 (decode20, encode20: of order 20),
-// random numbers one at a time. curve/walk: a voxel of a walk in order. query/N: one random voxel of the bunny's
-// universe.
+// random numbers one at a time. curve/walk: a voxel of a walk in order.
 #include "blackleaf/curve.h"
 
 #include <algorithm>
@@ -16,11 +15,10 @@ namespace {
 constexpr int kWalkOrder = 10;
 constexpr std::uint64_t kWalk = std::uint64_t{1} << 20;
 constexpr std::size_t kNumbers = 4096;
-constexpr std::size_t kQueries = std::size_t{1} << 20;  // too many for what they touch to stay in the caches
 
-std::vector<std::uint64_t> random_numbers(int order, std::size_t count = kNumbers) {
+std::vector<std::uint64_t> random_numbers(int order) {
   std::mt19937_64 random(1992);
-  std::vector<std::uint64_t> numbers(count);
+  std::vector<std::uint64_t> numbers(kNumbers);
   for (auto& number : numbers) number = random() >> (64 - 3 * order);
   return numbers;
 }
@@ -31,13 +29,6 @@ void each(benchmark::State& state, const Items& items, const Function& work) {
   for (auto _ : state)
     for (const auto& item : items) benchmark::DoNotOptimize(work(item));
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(items.size()));
-}
-
-// Counting makes sure that every voxel is really looked up; a value that nobody uses need not even be loaded.
-template <class IsBlack>
-void count_black(benchmark::State& state, const std::vector<curve::Voxel>& voxels, const IsBlack& is_black) {
-  for (auto _ : state) benchmark::DoNotOptimize(std::count_if(voxels.begin(), voxels.end(), is_black));
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(voxels.size()));
 }
 
 }  // namespace
@@ -75,24 +66,6 @@ void add_curve() {
         benchmark::DoNotOptimize(mhf92::node_no_to_xyz(kWalkOrder, number));
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kWalk));
   });
-  for (const int depth : {8, 9}) {
-    const auto random_voxels = [=] {
-      std::vector<curve::Voxel> voxels;
-      for (const std::uint64_t number : random_numbers(depth, kQueries)) voxels.push_back(curve::voxel(depth, number));
-      return voxels;
-    };
-    const std::string key = "query/" + side_name(depth);
-    contender(key, "ours", [=](benchmark::State& state) {
-      const Octree& octree = bunny(depth);
-      count_black(state, random_voxels(), [&](const curve::Voxel& v) { return octree.contains(v.x, v.y, v.z); });
-    });
-    contender(key, "dense", [=](benchmark::State& state) {
-      const auto& volume = bunny_volume(depth);
-      count_black(state, random_voxels(), [&](const curve::Voxel& v) {
-        return volume[static_cast<std::size_t>((std::int64_t{v.z} << depth | v.y) << depth | v.x)] != 0;
-      });
-    });
-  }
 }
 
 }  // namespace blackleaf::bench

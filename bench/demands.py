@@ -1,4 +1,5 @@
 """What Blackleaf demands of its own speed and size, and whether the stored figures hold it (bench/compare --check)."""
+import tables
 
 MEGABYTE = 1e6
 ATLAS_VOXELS = 181 * 217 * 181  # of aal.nii.gz
@@ -17,7 +18,7 @@ class Figures:
     def times(self, key, who):
         """How many times ours the other takes."""
         result = self.results[key]
-        return result["peers"][who] / result["ours"]
+        return result["peers"][who] / tables.beside(result, who)
 
     def two_threads(self, key):
         """How far a figure of two threads is above what it must reach: 1 at 1.8 times one thread, or at 1.4 reads."""
@@ -77,6 +78,21 @@ def demands():
     key = "move-memory/1024"
     yield f"{key}: of source and target", lambda f, k=key: 1 / f.times(k, "source+target"), "at most", 1.1
     yield "sweep/512/t1: each move, all united", lambda f: f.times("sweep/512/t1", "moves"), "at least", 3
+    for side in ("128", "256"):
+        key = f"interfere/{side}"
+        for end in ("", "_p95"):
+            yield f"{key}: FCL octree-octree{end}", lambda f, k=key, e=end: f.times(k, "fcl-octree" + e), "at least", 20
+            yield f"{key}: FCL mesh-mesh{end}", lambda f, k=key, e=end: f.times(k, "fcl-mesh" + e), "at least", 1
+    for side in ("128", "256", "512"):
+        key = f"interfere-voxelised/{side}"
+        yield f"{key}: exact", lambda f, k=key: f.times(k, "exact"), "at least", 0.9
+    for smaller, larger in (("128", "256"), ("256", "512")):
+        yield (f"interfere/{larger}: growth", lambda f, s=smaller, l=larger: f.growth(f"interfere/{s}", f"interfere/{l}"),
+               "at most", 1.6)
+    yield ("interfere-batch/256: two threads", lambda f: f.ours("interfere-batch/256/t1") / f.ours("interfere-batch/256/t2"),
+           "at least", 1.8)
+    yield "query/512: in OpenVDB's getValue", lambda f: 1 / f.times("query/512", "openvdb"), "at most", 1.2
+    yield "ray/1024: OctoMap castRay", lambda f: f.times("ray/1024", "octomap"), "at least", 10
     yield "svg/1024: MB/s", lambda f: f.ours("svg-bytes/1024") / f.ours("svg/1024") / MEGABYTE, "at least", 100
     yield "curve/decode: ns", lambda f: f.ours("curve/decode") / NANOSECOND, "at most", 12
     yield "curve/encode: ns", lambda f: f.ours("curve/encode") / NANOSECOND, "at most", 12

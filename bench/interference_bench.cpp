@@ -1,14 +1,15 @@
-// interfere/N: is the bunny in the way of another bunny, both at 0.9 to 1.1 of the distance at which they touch; a
-// bunny's longest side is 0.6 N voxels. Two questions:
-//   interfere/N        both are octrees of one universe already (AN84's parallel traversal), shifted by whole voxels
-//   interfere-moved/N  the second is turned and shifted anyhow, its cubes tilted, nothing voxelised
-// Times are for one pair.
+// interfere/N: is the bunny in the way of another bunny, turned and shifted anyhow, both near contact; a bunny's
+// longest side is 0.6 N voxels. Exact: tilted cubes, nothing voxelised. interfere-voxelised/N: the same of the voxels
+// that `move` would make. interfere-batch/N/tT: 10,000 such questions at once; for one. interfere-parallel/N: both are
+// octrees of one universe already (AN84's parallel traversal), shifted by whole voxels. prepare/N: preparing one bunny.
+// overlap/N: the octree of what two bunnies share.
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "blackleaf/contact.h"
 #include "blackleaf/move.h"
+#include "blackleaf/set_operations.h"
+#include "contact_poses.h"
 #include "contenders.h"
 #include "inputs.h"
 #include "papers/an84.h"
@@ -17,7 +18,6 @@ namespace blackleaf::bench {
 namespace {
 
 constexpr int kPairs = 24;
-constexpr int kPoses = 200;
 
 Eigen::Vector3d random_direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
@@ -82,37 +82,55 @@ void paper(benchmark::State& state, int depth) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * kPairs);
 }
 
-void ours_moved(benchmark::State& state, int depth) {
+constexpr int kBatch = 10000;
+
+void batch(benchmark::State& state, int depth, int threads) {
+  const PreparedSolid solid(bunny(depth));
+  std::vector<Motion> motions;
+  for (int i = 0; i < kBatch; ++i) {
+    const auto& poses = contact_poses(depth);
+    motions.push_back(poses[static_cast<std::size_t>(i) % poses.size()]);
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(interferes(solid, solid, motions, Meaning::exact, {threads, {}}));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * kBatch);
+}
+
+// What two bunnies share that overlap by a tenth of their distance of contact.
+void overlapping(benchmark::State& state, int depth, bool whole) {
   const Octree& octree = bunny(depth);
-  static const std::vector<Motion> poses = [&] {
-    std::mt19937 random(1987);
-    const Eigen::Vector3d centre = Eigen::Vector3d::Constant(octree.side() / 2.0);
-    std::vector<Motion> result;
-    for (int i = 0; i < kPoses; ++i) {
-      const Motion turn = Motion::rotation(random_direction(random),
-                                           std::uniform_real_distribution<double>(0, std::numbers::pi)(random))
-                              .about(centre);
-      const Eigen::Vector3d direction = random_direction(random);
-      const auto at = [&](double t) { return Motion::translation(t * direction) * turn; };
-      const double touch =
-          contact(0, 2.0 * octree.side(), [&](double t) { return interferes(octree, octree, at(t), Meaning::exact); });
-      result.push_back(at(touch * std::uniform_real_distribution<double>(0.9, 1.1)(random)));
-    }
-    return result;
-  }();
+  const Motion motion = Motion::translation({0.1 * octree.side(), 0.2 * octree.side(), 0}) * bunny_motion(depth);
   for (auto _ : state)
-    for (const Motion& pose : poses) benchmark::DoNotOptimize(interferes(octree, octree, pose, Meaning::exact));
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * kPoses);
+    benchmark::DoNotOptimize(whole ? intersect(octree, move(octree, motion, Leaving::clip, {1, {}}), {1, {}})
+                                   : overlap(octree, octree, motion, {1, {}}));
 }
 
 }  // namespace
 
 void add_interference() {
   for (const int depth : {7, 8, 9}) {
-    contender("interfere/" + side_name(depth), "ours", [=](benchmark::State& s) { ours(s, depth); });
-    contender("interfere/" + side_name(depth), "paper", [=](benchmark::State& s) { paper(s, depth); });
-    contender("interfere-moved/" + side_name(depth), "ours", [=](benchmark::State& s) { ours_moved(s, depth); });
+    const std::string side = side_name(depth);
+    const auto prepared = [=](Meaning meaning) -> Ask {
+      return [solid = PreparedSolid(bunny(depth)), meaning](const Motion& pose) {
+        return interferes(solid, solid, pose, meaning);
+      };
+    };
+    add_timed_poses("interfere/" + side, "ours", depth, [=] { return prepared(Meaning::exact); });
+    add_timed_poses("interfere/" + side, "unprepared", depth, [=]() -> Ask {
+      return [&octree = bunny(depth)](const Motion& pose) { return interferes(octree, octree, pose, Meaning::exact); };
+    });
+    add_timed_poses("interfere-voxelised/" + side, "ours", depth, [=] { return prepared(Meaning::voxelised); });
+    add_timed_poses("interfere-voxelised/" + side, "exact", depth, [=] { return prepared(Meaning::exact); });
+    contender("interfere-parallel/" + side, "ours", [=](benchmark::State& s) { ours(s, depth); });
+    contender("interfere-parallel/" + side, "paper", [=](benchmark::State& s) { paper(s, depth); });
+    contender("prepare/" + side, "ours", [=](benchmark::State& s) {
+      for (auto _ : s) benchmark::DoNotOptimize(PreparedSolid(bunny(depth)));
+    });
   }
+  for (const int threads : {1, 2})
+    contender("interfere-batch/256/t" + std::to_string(threads), "ours",
+              [=](benchmark::State& s) { batch(s, 8, threads); });
+  contender("overlap/512/t1", "ours", [](benchmark::State& s) { overlapping(s, 9, false); });
+  contender("overlap/512/t1", "move-and-intersect", [](benchmark::State& s) { overlapping(s, 9, true); });
 }
 
 }  // namespace blackleaf::bench

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   add_offset();
   add_sweep();
   add_interference();
+  add_query();
   add_drawing();
   add_curve();
   add_file();
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   add_openvdb_translate();
   add_openvdb_sets();
   add_octomap();
+  add_fcl();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {

@@ -23,15 +23,21 @@ def plainly(value):
     return f"{value:.2g}" if value < 100 else f"{value:.0f}"
 
 
+def beside(result, who):
+    """What a contender is compared with: 95th percentiles with ours, all else with our one figure."""
+    return result["ours_p95"] if who.endswith("_p95") else result["ours"]
+
+
 def ratio_table(results):
     lines = ["| key | ours | others / ours |", "|---|---|---|"]
     for key, result in results.items():
         ours, unit = result["ours"], result["unit"]
         if unit == "s" or ours:
-            others = [f"{who} {plainly(value / ours)}" for who, value in result["peers"].items()]
+            others = [f"{who} {plainly(value / beside(result, who))}" for who, value in result["peers"].items()]
         else:
             others = [f"{who} {shown(value, unit)}" for who, value in result["peers"].items()]
-        lines.append(f"| `{key}` | {shown(ours, unit)} | {', '.join(others)} |")
+        p95 = f", p95 {shown(result['ours_p95'], unit)}" if "ours_p95" in result else ""
+        lines.append(f"| `{key}` | {shown(ours, unit)}{p95} | {', '.join(others)} |")
     return lines
 
 

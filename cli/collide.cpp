@@ -1,15 +1,22 @@
 // blackleaf collide: whether two solids interfere, by how much, how far apart they are.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
+#include "blackleaf/align.h"
 #include "blackleaf/contact.h"
 #include "blackleaf/error.h"
 #include "blackleaf/move.h"
+#include "blackleaf/resample.h"
+#include "blackleaf/set_operations.h"
 #include "commands.h"
 #include "files.h"
 #include "motion_options.h"
+#include "options.h"
+#include "poses.h"
 
 namespace blackleaf::cli {
 namespace {
@@ -56,26 +63,100 @@ std::string as_text(const Answer& answer) {
                      a[1], a[2], b[0], b[1], b[2]);
 }
 
+// A and B as they are compared: in one universe.
+std::pair<Octree, Octree> read_both(Session& session, const std::string& a_name, const Label& a_label,
+                                    const std::string& b_name, const Label& b_label, bool align, bool resample) {
+  if (a_name == "-" && b_name == "-")
+    throw Error(ErrorCode::bad_argument, "both octrees are - for standard input", "name a file for one of them");
+  const Octree a = read_solid(session, a_name, a_label), b = read_solid(session, b_name, b_label);
+  if (align) {
+    check_lattice(a, a_name, b, b_name);
+    const std::vector<Octree> pair = session.stage("align", [&](const Work& work) {
+      return aligned(std::vector{a, b}, work);
+    });
+    return {pair[0], pair[1]};
+  }
+  if (resample) {
+    const Octree placed =
+        session.stage("resample", [&](const Work& work) { return resampled(b, a.frame(), a.depth(), work); });
+    return {a, placed};
+  }
+  check_voxel_sizes(a, a_name, b, b_name);
+  check_one_universe(
+      session, a, a_name, b, b_name,
+      "build both in one universe, with build --like, or place them by their frames with --align or --resample");
+  return {a, b};
+}
+
+// The answers for many poses; true iff they interfere at any.
+bool ask_poses(Session& session, const Octree& a, const Octree& b, const std::vector<Motion>& motions, bool exact) {
+  const std::vector<bool> answers = session.stage("collide", [&](const Work& work) {
+    return interferes(PreparedSolid(a), PreparedSolid(b), motions, exact ? Meaning::exact : Meaning::voxelised, work);
+  });
+  const auto hits = std::count(answers.begin(), answers.end(), true);
+  if (session.json()) {
+    print_out(Json{{"poses", answers.size()},
+                   {"interfering", hits},
+                   {"interferes", answers},
+                   {"mode", exact ? "exact" : "voxelised"}});
+  } else if (!session.quiet()) {
+    std::string text = fmt::format("they interfere at {} of {}", grouped(static_cast<std::uint64_t>(hits)),
+                                   counted(answers.size(), "pose"));
+    constexpr std::ptrdiff_t kShown = 20;
+    std::ptrdiff_t shown = 0;
+    for (std::size_t i = 0; i < answers.size() && shown < kShown; ++i)
+      if (answers[i]) text += fmt::format("{}{}", shown++ == 0 ? ": " : ", ", i + 1);
+    if (hits > shown) text += ", ...";
+    print_out(text + "\n");
+  }
+  return hits > 0;
+}
+
 }  // namespace
 
 int run_collide(Session& session) {
   Label first_label, second_label;
   std::string first_name, second_name;
   bool exact = false;
+  bool align = false, resample = false;
+  std::optional<std::string> poses_name, output;
   MotionOptions motion_options;
   add_octree_input(session.app(), "A", first_name);
   add_octree_input(session.app(), "B", second_name, "octree file of the same depth");
   motion_options.add_to(session.app(), "B");
-  session.app().add_flag("--exact", exact, "take the moved B as tilted cubes, not as voxels; no volume or distance");
+  CLI::Option* exact_flag = session.app().add_flag(
+      "--exact", exact, "take the moved B as tilted cubes, not as voxels; no volume or distance");
+  CLI::Option* poses = add_text(session.app(), "--poses", poses_name, "FILE",
+                                "ask at many poses of B: one a line, x,y,z or x,y,z@x,y,z:degrees, or a path in JSON");
+  add_text(session.app(), "-o,--output", output, "OUT", "write the octree of what they share")
+      ->excludes(exact_flag)
+      ->excludes(poses);
+  CLI::Option* align_flag = session.app().add_flag(
+      "--align", align, "place B by its frame, in the universe of A, doubled until it holds both");
+  session.app()
+      .add_flag("--resample", resample,
+                "place B by its frame on the voxels of A, whatever its own are, in A's universe")
+      ->excludes(align_flag);
   add_label(session.app(), first_label, "--label-a", "of a file A of many labels: the solid of this one");
   add_label(session.app(), second_label, "--label-b", "the same of B");
   session.add_json();
   session.set_example("blackleaf collide room.octree robot.octree --rotate 0,0,1:45 --about centroid");
   if (!session.parse()) return kDone;
 
-  const std::pair<Octree, Octree> pair = read_pair(session, first_name, first_label, second_name, second_label);
+  if (poses_name && motion_options.given())
+    throw Error(ErrorCode::bad_argument, "--poses and another motion of B are both given", "leave out one of them");
+  if (poses_name == "-" && (first_name == "-" || second_name == "-"))
+    throw Error(ErrorCode::bad_argument, "an octree and the poses are both - for standard input",
+                "name a file for one of them");
+  if (output) check_octree_output(session, *output);
+  const std::pair<Octree, Octree> pair =
+      read_both(session, first_name, first_label, second_name, second_label, align, resample);
   const Octree& a = pair.first;
   const Octree& b = pair.second;
+  if (poses_name) {
+    const std::vector<Motion> motions = read_poses(session, *poses_name, b);
+    return ask_poses(session, a, b, motions, exact) ? kNo : kDone;
+  }
   Answer answer;
   if (exact) {
     const Motion motion = motion_options.motion(b);
@@ -87,6 +168,15 @@ int run_collide(Session& session) {
       answer.interferes = *answer.overlap > 0;
       if (!answer.interferes) answer.apart = distance(a, target);
     });
+    if (output) {
+      const Octree common = session.stage("overlap", [&](const Work& work) { return intersect(a, target, work); });
+      warn_if_empty(session, common);
+      Json options = motion_options.as_json(motion_options.motion(b));
+      options["with"] = base_name(second_name);
+      write_octree(session, common, *output, first_name, options, as_json(answer, exact),
+                   session.quiet() || session.json() || *output == "-" ? "" : as_text(answer));
+      return answer.interferes ? kNo : kDone;
+    }
   }
   if (session.json())
     print_out(as_json(answer, exact));

@@ -34,14 +34,6 @@ Operation operation_of(const std::string& name, const std::string& before, const
   return chosen->second;
 }
 
-// For --align.
-void check_lattice(const Octree& first, const std::string& first_name, const Octree& other, const std::string& name) {
-  if (!whole_shift(other.frame(), first.frame()))
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("--align: the voxels of '{}' do not lie on those of '{}' in the world", name, first_name),
-                "build it with the other's frame, with build --like");
-}
-
 }  // namespace
 
 int run_combine(Session& session) {

@@ -14,6 +14,7 @@ int run_move(Session& session);
 int run_combine(Session& session);
 int run_offset(Session& session);
 int run_collide(Session& session);
+int run_ray(Session& session);
 int run_sweep(Session& session);
 int run_animate(Session& session);
 int run_draw(Session& session);

@@ -181,6 +181,12 @@ Octree read_beside(Session& session, const Octree& first, const std::string& fir
   if (first_name == "-" && name == "-")
     throw Error(ErrorCode::bad_argument, "both octrees are - for standard input", "name a file for one of them");
   Octree next = read_solid(session, name, label);
+  check_one_universe(session, first, first_name, next, name, remedy);
+  return next;
+}
+
+void check_one_universe(const Session& session, const Octree& first, const std::string& first_name, const Octree& next,
+                        const std::string& name, const std::string& remedy) {
   if (first.depth() != next.depth())
     throw Error(ErrorCode::bad_argument,
                 fmt::format("'{}' has depth {} and '{}' has depth {}", first_name, first.depth(), name, next.depth()),
@@ -190,13 +196,29 @@ Octree read_beside(Session& session, const Octree& first, const std::string& fir
         fmt::format("'{}' and '{}' have different frames; they are compared voxel by voxel as if both had "
                     "that of the first",
                     first_name, name));
-  return next;
 }
 
-std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const Label& a_label, const std::string& b,
-                                    const Label& b_label) {
-  const Octree first = read_solid(session, a, a_label);
-  return {first, read_beside(session, first, a, b, b_label)};
+void check_lattice(const Octree& first, const std::string& first_name, const Octree& other, const std::string& name) {
+  if (!whole_shift(other.frame(), first.frame()))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("--align: the voxels of '{}' do not lie on those of '{}' in the world", name, first_name),
+                "build it with the other's frame, with build --like");
+}
+
+void check_voxel_sizes(const Octree& first, const std::string& first_name, const Octree& other,
+                       const std::string& name) {
+  const auto text = [](const Frame& frame) {
+    const Eigen::Vector3d size = frame.axes.colwise().norm();
+    return size.isApproxToConstant(size.x(), 1e-9)
+               ? fmt::format("{:.10g} {}", size.x(), frame.unit)
+               : fmt::format("{:.10g} x {:.10g} x {:.10g} {}", size.x(), size.y(), size.z(), frame.unit);
+  };
+  const Eigen::Vector3d a = first.frame().axes.colwise().norm(), b = other.frame().axes.colwise().norm();
+  if (!a.isApprox(b, 1e-6) || first.frame().unit != other.frame().unit)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("the voxels of '{}' measure {} and those of '{}' {}", first_name, text(first.frame()), name,
+                            text(other.frame())),
+                "put the second on the voxels of the first with --resample");
 }
 
 void warn_if_empty(const Session& session, const Octree& octree) {

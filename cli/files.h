@@ -5,7 +5,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "blackleaf/octree.h"
@@ -41,10 +40,14 @@ OctreeFile read_octree(Session& session, const std::string& path);
 /// Error(bad_argument) when their depths differ, with `remedy`; warns when their frames do.
 Octree read_beside(Session& session, const Octree& first, const std::string& first_name, const std::string& name,
                    const Label& label, const std::string& remedy = "build both in one universe, with build --like");
-/// Loads two solids that are to be compared voxel by voxel, as read_solid() does. Throws Error(bad_argument) when their
-/// depths differ; warns when their frames do.
-std::pair<Octree, Octree> read_pair(Session& session, const std::string& a, const Label& a_label, const std::string& b,
-                                    const Label& b_label);
+/// The check of two that are loaded already.
+void check_one_universe(const Session& session, const Octree& first, const std::string& first_name, const Octree& next,
+                        const std::string& name, const std::string& remedy);
+/// For --align: throws Error(bad_argument) unless the voxels of both lie on each other in the world.
+void check_lattice(const Octree& first, const std::string& first_name, const Octree& other, const std::string& name);
+/// Throws Error(bad_argument) that names both sizes when the voxels of two solids, in the world, are of different ones.
+void check_voxel_sizes(const Octree& first, const std::string& first_name, const Octree& other,
+                       const std::string& name);
 /// All bytes of a file, or of standard input for "-". Throws Error(io).
 std::vector<std::uint8_t> read_bytes(const std::string& path);
 /// True iff the bytes begin as those of an octree file do, whatever follows.

@@ -8,6 +8,8 @@
 #include "compressed_size.h"
 #include "contenders.h"
 #include "inputs.h"
+#include "octomap_trees.h"
+#include "query_bench.h"
 
 namespace blackleaf::bench {
 namespace {
@@ -42,12 +44,36 @@ void from_volume(benchmark::State& state, int depth) {
   }
 }
 
-// The bunny's tree; made once in a process.
-octomap::OcTree& bunny_tree(int depth) {
-  static std::map<int, std::unique_ptr<octomap::OcTree>> made;
+std::vector<std::uint8_t> file(int depth) {
+  std::ostringstream written;
+  bunny_octomap(depth)->writeBinary(written);
+  const std::string bytes = written.str();
+  return {bytes.begin(), bytes.end()};
+}
+
+void cast_rays(benchmark::State& state, int depth) {
+  const auto tree = bunny_octomap(depth);
+  std::vector<std::pair<octomap::point3d, octomap::point3d>> rays;
+  const auto point = [](const Eigen::Vector3d& p) {
+    return octomap::point3d(static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()));
+  };
+  for (const Ray& ray : random_rays(depth)) rays.emplace_back(point(ray.origin), point(ray.direction));
+  for (auto _ : state)
+    for (const auto& [origin, direction] : rays) {
+      octomap::point3d end;
+      benchmark::DoNotOptimize(tree->castRay(origin, direction, end, /*ignoreUnknownCells=*/true, 2 << depth));
+    }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) *
+                          static_cast<std::int64_t>(random_rays(depth).size()));
+}
+
+}  // namespace
+
+std::shared_ptr<octomap::OcTree> bunny_octomap(int depth) {
+  static std::map<int, std::shared_ptr<octomap::OcTree>> made;
   auto& tree = made[depth];
   if (!tree) {
-    tree = std::make_unique<octomap::OcTree>(1.0);
+    tree = std::make_shared<octomap::OcTree>(1.0);
     for_each_black_leaf(bunny(depth), [&](const Leaf& leaf) {
       const Cube& c = leaf.cube;
       for (int z = c.z; z < c.z + c.side(); ++z)
@@ -56,17 +82,8 @@ octomap::OcTree& bunny_tree(int depth) {
     });
     finish(*tree);
   }
-  return *tree;
+  return tree;
 }
-
-std::vector<std::uint8_t> file(int depth) {
-  std::ostringstream written;
-  bunny_tree(depth).writeBinary(written);
-  const std::string bytes = written.str();
-  return {bytes.begin(), bytes.end()};
-}
-
-}  // namespace
 
 void add_octomap() {
   for (const int depth : {8, 9, 10}) {
@@ -74,7 +91,15 @@ void add_octomap() {
     contender("voxels/" + side + "/t1", "octomap", [=](benchmark::State& state) { from_volume(state, depth); })
         ->Iterations(1)
         ->Repetitions(depth == 10 ? 2 : 3);
-    sized("memory/" + side, "octomap", [=] { return bunny_tree(depth).memoryUsage(); });
+    contender("ray/" + side, "octomap", [=](benchmark::State& state) { cast_rays(state, depth); });
+    if (depth < 10)
+      contender("query/" + side, "octomap", [=](benchmark::State& state) {
+        const auto tree = bunny_octomap(depth);
+        count_black(state, depth, [&](const curve::Voxel& v) {
+          return tree->search(key_of(static_cast<int>(v.x), static_cast<int>(v.y), static_cast<int>(v.z))) != nullptr;
+        });
+      });
+    sized("memory/" + side, "octomap", [=] { return bunny_octomap(depth)->memoryUsage(); });
     sized("file/" + side, "octomap", [=] { return file(depth).size(); });
     sized("file/" + side, "octomap-zstd", [=] { return compressed_size(file(depth)); });
   }

@@ -31,6 +31,8 @@
 #include "blackleaf/points.h"
 #include "blackleaf/points_file.h"
 #include "blackleaf/prepared_solid.h"
+#include "blackleaf/ray.h"
+#include "blackleaf/resample.h"
 #include "blackleaf/runs.h"
 #include "blackleaf/runs_file.h"
 #include "blackleaf/scene.h"

@@ -4,10 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "blackleaf/motion.h"
 #include "blackleaf/octree.h"
 #include "blackleaf/prepared_solid.h"
+#include "blackleaf/work.h"
 
 namespace blackleaf {
 
@@ -18,6 +21,11 @@ bool interferes(const Octree& a, const Octree& b);
 
 /// Voxels black in both, the volume of a and b. Throws as above. O(min of the words).
 std::uint64_t overlap_volume(const Octree& a, const Octree& b);
+
+/// The octree of what `a` shares with `b` moved, voxelised: intersect(a, move(b, motion_of_b, Leaving::clip)), bit for
+/// bit, made only where `a` is. It has the frame of `a`; volume() measures it. Without a motion see intersect(). Throws
+/// as above, and Error(cancelled). O(surface of both where both are, and of the overlap).
+Octree overlap(const Octree& a, const Octree& b, const Motion& motion_of_b, const Work& work = {});
 
 /// What a moved solid is taken for.
 enum class Meaning {
@@ -31,6 +39,9 @@ enum class Meaning {
 bool interferes(const Octree& a, const Octree& b, const Motion& motion_of_b, Meaning meaning);
 /// The same answer, sooner: for many questions about the same solids.
 bool interferes(const PreparedSolid& a, const PreparedSolid& b, const Motion& motion_of_b, Meaning meaning);
+/// The answers for many motions, in order, on all threads that `work` allows. Throws as above, and Error(cancelled).
+std::vector<bool> interferes(const PreparedSolid& a, const PreparedSolid& b, std::span<const Motion> motions_of_b,
+                             Meaning meaning, const Work& work = {});
 
 /// Two nearest points of two solids.
 struct Distance {

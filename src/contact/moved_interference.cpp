@@ -25,6 +25,7 @@
 #include "blackleaf/contact.h"
 #include "contact_node.h"
 #include "exact_boxes.h"
+#include "octree/parallel.h"
 #include "octree/same_depth.h"
 #include "placement.h"
 
@@ -311,6 +312,20 @@ bool interferes(const Octree& a, const Octree& b, const Motion& motion_of_b, Mea
 bool interferes(const PreparedSolid& a, const PreparedSolid& b, const Motion& motion_of_b, Meaning meaning) {
   detail::require_same_depth(a.octree(), b.octree());
   return meet(detail::ContactNodes(a), detail::ContactNodes(b), motion_of_b, meaning);
+}
+
+std::vector<bool> interferes(const PreparedSolid& a, const PreparedSolid& b, std::span<const Motion> motions_of_b,
+                             Meaning meaning, const Work& work) {
+  detail::require_same_depth(a.octree(), b.octree());
+  const detail::ContactNodes nodes_a(a), nodes_b(b);
+  std::vector<std::uint8_t> answers(motions_of_b.size());
+  constexpr std::size_t kAtOnce = 64;  // a hundred microseconds or more
+  detail::for_each_index((answers.size() + kAtOnce - 1) / kAtOnce, work, [&](std::size_t part) {
+    const std::size_t end = std::min(answers.size(), (part + 1) * kAtOnce);
+    for (std::size_t i = part * kAtOnce; i < end; ++i)
+      answers[i] = meet(nodes_a, nodes_b, motions_of_b[i], meaning) ? 1 : 0;
+  });
+  return {answers.begin(), answers.end()};
 }
 
 }  // namespace blackleaf

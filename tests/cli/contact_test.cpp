@@ -1,6 +1,8 @@
 // blackleaf collide: exit status, numbers and both modes.
 #include <cmath>
 
+#include "blackleaf/implicit.h"
+#include "blackleaf/octree_file.h"
 #include "cli/run_command.h"
 
 namespace blackleaf::test {
@@ -18,6 +20,14 @@ class Collide : public CliTest {
     const json answer = result.json();
     EXPECT_EQ(result.code, answer["interferes"] ? 1 : 0);
     return answer;
+  }
+  // The same where the exit status tells of many answers.
+  json ask_any(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"collide", "a.octree", "b.octree", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = run(words);
+    EXPECT_EQ(result.code, result.json()["interfering"].get<int>() > 0 ? 1 : 0);
+    return result.json();
   }
   Collide() {
     make_box("a.octree", 5, {0, 0, 0}, {8, 8, 8});
@@ -72,6 +82,83 @@ TEST_F(Collide, PartsOutsideTheUniverseAreMentioned) {
   EXPECT_EQ(gone.json()["distance"], nullptr);
   // Tilted cubes may be anywhere.
   EXPECT_EQ(ask({"--translate", "100,0,0", "--exact"})["interferes"], false);
+}
+
+TEST_F(Collide, AtManyPoses) {
+  write("poses.txt", "# one a line\n0,0,0\n-6,-5,-1   # inside\n\n -4,-3,0\n-3.3,-8,-4@0,0,1:45\n");
+  const json voxelised = ask_any({"--poses", "poses.txt"});
+  EXPECT_EQ(voxelised, json::parse(R"({"poses":4,"interfering":1,"interferes":[false,true,false,false],
+                                        "mode":"voxelised"})"));
+  EXPECT_EQ(ask_any({"--poses", "poses.txt", "--exact"})["interferes"], json::parse("[false,true,false,true]"));
+  const Result text = run({"collide", "a.octree", "b.octree", "--poses", "poses.txt", "--exact"});
+  EXPECT_EQ(text.code, 1);
+  EXPECT_EQ(text.out, "they interfere at 2 of 4 poses: 2, 4\n");
+  // A path is as good; standard input too.
+  const std::string path =
+      R"({"poses": [{"time": 0}, {"time": 1, "translation": [-6, -5, -1]}, {"time": 2, "translation": [9, 0, 0]}]})";
+  const Result piped = run({"collide", "a.octree", "b.octree", "--poses", "-", "--threads", "2"}, path);
+  EXPECT_EQ(piped.out, "they interfere at 1 of 3 poses: 2\n");
+  write("none.txt", "# nothing\n");
+  refused({"collide", "a.octree", "b.octree", "--poses", "none.txt"}, "'none.txt' has no poses");
+  write("bad.txt", "1,2,3\n1,2\n");
+  refused({"collide", "a.octree", "b.octree", "--poses", "bad.txt"}, "line 2 of 'bad.txt'");
+  write("bad.txt", "1,2,3@0,0,1\n");
+  refused({"collide", "a.octree", "b.octree", "--poses", "bad.txt"}, "line 1 of 'bad.txt'");
+  refused({"collide", "a.octree", "b.octree", "--poses", "poses.txt", "--translate", "1,0,0"}, "--poses");
+  refused({"collide", "a.octree", "b.octree", "--poses", "no.txt"}, "no.txt");
+}
+
+TEST_F(Collide, WritesWhatTheyShare) {
+  const json report = ask({"--translate", "-6,-5,-1", "-o", "common.octree"});
+  EXPECT_EQ(report["volume"], 4);
+  EXPECT_EQ(report["overlap_volume"], 4);
+  EXPECT_TRUE(load(folder() / "common.octree").octree == box(5, {6, 6, 7}, {8, 8, 8}));
+  const Result text = run({"collide", "a.octree", "b.octree", "--translate", "-6,-5,-1", "-o", "common.octree"});
+  EXPECT_EQ(text.out.find("they interfere: the overlap is 4 voxels\ncommon.octree: depth 5, 4 voxels"), 0u) << text.out;
+  const Result apart = run({"collide", "a.octree", "b.octree", "-o", "none.octree"});
+  EXPECT_EQ(apart.code, 0);
+  EXPECT_TRUE(load(folder() / "none.octree").octree.is_empty());
+  refused({"collide", "a.octree", "b.octree", "--exact", "-o", "x.octree"}, "--exact");
+}
+
+TEST_F(Collide, FramesThatDoNotMatch) {
+  Frame fine;
+  fine.axes *= 0.5;
+  save(box(6, {24, 22, 16}, {32, 30, 24}, fine), folder() / "fine.octree");
+  refused({"collide", "a.octree", "fine.octree"},
+          "the voxels of 'a.octree' measure 1 voxel and those of 'fine.octree' 0.5 voxel");
+  EXPECT_EQ(run({"collide", "a.octree", "fine.octree", "--resample", "--json"}).json()["distance"], 5.0);
+  EXPECT_EQ(run({"collide", "a.octree", "fine.octree", "--resample", "--exact", "--translate", "-6,-5,-1"}).code, 1);
+  Frame aside;
+  aside.origin = {-2, 0, 0};
+  save(box(4, {12, 11, 8}, {16, 15, 12}, aside), folder() / "aside.octree");
+  refused({"collide", "a.octree", "aside.octree"}, "--align");
+  EXPECT_EQ(run({"collide", "a.octree", "aside.octree", "--align", "--json"}).json()["distance"],
+            std::sqrt(2.0 * 2 + 3 * 3));
+  aside.origin = {-2.25, 0, 0};
+  save(box(4, {12, 11, 8}, {16, 15, 12}, aside), folder() / "aside.octree");
+  refused({"collide", "a.octree", "aside.octree", "--align"}, "do not lie on those");
+  refused({"collide", "a.octree", "fine.octree", "--resample", "--align"}, "excludes");
+}
+
+using RayCommand = CliTest;
+
+TEST_F(RayCommand, HitsAndMisses) {
+  make_box("a.octree", 5, {2, 3, 4}, {8, 8, 8});
+  const Result hit = run({"ray", "a.octree", "--from", "-2,5,5.5", "--direction", "2,0,0"});
+  EXPECT_EQ(hit.code, 0);
+  EXPECT_EQ(hit.out, "it hits at (2, 5, 5.5) at 2, face -x\n");
+  EXPECT_EQ(run({"ray", "a.octree", "--from", "-2,5,5.5", "--direction", "2,0,0", "--json"}).json(),
+            json::parse(R"({"hit":true,"time":2.0,"point":[2.0,5.0,5.5],"face":"-x"})"));
+  EXPECT_EQ(run({"ray", "a.octree", "--from", "5,5,5", "--direction", "0,0,1", "--all", "--json"}).json(),
+            json::parse(R"({"hit":true,"stretches":[{"enter":{"time":0.0,"point":[5.0,5.0,5.0],"face":null},
+                            "leave":{"time":3.0,"point":[5.0,5.0,8.0],"face":"+z"}}]})"));
+  const Result miss = run({"ray", "a.octree", "--from", "-2,5,5.5", "--direction", "-2,0,0"});
+  EXPECT_EQ(miss.code, 1);
+  EXPECT_EQ(miss.out, "it misses\n");
+  refused({"ray", "a.octree", "--from", "1,2", "--direction", "1,0,0"}, "--from");
+  refused({"ray", "a.octree", "--from", "1,2,3", "--direction", "0,0,0"}, "direction");
+  refused({"ray", "a.octree", "--direction", "1,0,0"}, "--from");
 }
 
 TEST_F(Collide, Refusals) {

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "blackleaf/contact.h"
+#include "blackleaf/error.h"
 #include "blackleaf/implicit.h"
 #include "blackleaf/move.h"
+#include "blackleaf/set_operations.h"
 #include "contact/contact_node.h"
 #include "contact/exact_boxes.h"
 #include "motion/centre_kernel.h"
@@ -25,28 +27,6 @@ bool asked(const Octree& a, const Octree& b, const Motion& motion, Meaning meani
 bool exactly(const Octree& a, const Octree& b, const Motion& motion) { return asked(a, b, motion, Meaning::exact); }
 bool voxelised(const Octree& a, const Octree& b, const Motion& motion) {
   return asked(a, b, motion, Meaning::voxelised);
-}
-
-Octree box(int depth, const std::array<int, 3>& low, const std::array<int, 3>& high) {
-  return octree_from_classifier(depth, [&](const Cube& c) {
-    bool in = true, out = false;
-    const std::array from = {c.x, c.y, c.z};
-    for (std::size_t i = 0; i < 3; ++i) {
-      in = in && from[i] >= low[i] && from[i] + c.side() <= high[i];
-      out = out || from[i] >= high[i] || from[i] + c.side() <= low[i];
-    }
-    return in ? Colour::black : out ? Colour::white : Colour::gray;
-  });
-}
-
-Octree ball(int depth, const Eigen::Vector3d& centre, double radius) {
-  return octree_from_classifier(depth, [&](const Cube& c) {
-    const Eigen::Vector3d middle = Eigen::Vector3d(c.x, c.y, c.z) + Eigen::Vector3d::Constant(c.side() / 2.0);
-    const double distance = (middle - centre).norm(), half = (c.side() - 1) / 2.0 * std::sqrt(3.0);
-    if (distance + half <= radius) return Colour::black;
-    if (distance - half > radius) return Colour::white;
-    return c.level == 0 ? (distance <= radius ? Colour::black : Colour::white) : Colour::gray;
-  });
 }
 
 // Exact interference by the plainest descent, every pair of cubes decided in integers: for solids that are too large
@@ -129,6 +109,45 @@ TEST(ExactInterference, IsThatOfAllPairsOfLeaves) {
   }
   EXPECT_GT(hits, trials / 4);
   EXPECT_LT(hits, 3 * trials / 4);
+}
+
+TEST(Overlap, IsTheIntersectionWithTheMovedOctree) {
+  std::mt19937 random(86);
+  int hits = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    SCOPED_TRACE(trial);
+    const int depth = 1 + trial % 6;
+    const Octree a = reference::octree(reference::random_solid(depth, random));
+    const Octree b = reference::octree(reference::random_solid(depth, random));
+    const Motion motion = reference::random_motion(depth, random);
+    const Octree expected = intersect(a, move(b, motion, Leaving::clip));
+    const Octree found = overlap(a, b, motion, {1 + trial % 2, {}});
+    ASSERT_EQ(found, expected);
+    reference::expect_valid(found);
+    ASSERT_EQ(!found.is_empty(), interferes(a, b, motion, Meaning::voxelised));
+    hits += !found.is_empty();
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_TRUE(overlap(Octree(4, Colour::black), Octree(4, Colour::black), Motion::translation({1e9, 0, 0})).is_empty());
+  EXPECT_THROW(overlap(Octree(3), Octree(4), Motion()), Error);
+}
+
+TEST(Interference, OfManyMotionsIsThatOfEach) {
+  std::mt19937 random(87);
+  const PreparedSolid a(ball(6, {30, 33, 31}, 14.7)), b(box(6, {20, 20, 20}, {31, 40, 44}));
+  std::vector<Motion> motions = {Motion::translation({1e9, 0, 0})};
+  for (int i = 0; i < 300; ++i) motions.push_back(reference::random_motion(6, random));
+  for (const Meaning meaning : {Meaning::exact, Meaning::voxelised})
+    for (const int threads : {1, 2}) {
+      const std::vector<bool> answers = interferes(a, b, motions, meaning, {threads, {}});
+      ASSERT_EQ(answers.size(), motions.size());
+      for (std::size_t i = 0; i < motions.size(); ++i)
+        ASSERT_EQ(answers[i], interferes(a, b, motions[i], meaning)) << i;
+    }
+  EXPECT_TRUE(interferes(a, b, std::vector<Motion>{}, Meaning::exact).empty());
+  const Work refusing{1, [](double) { return false; }};
+  EXPECT_THROW(interferes(a, b, motions, Meaning::exact, refusing), Error);
+  EXPECT_THROW(interferes(a, PreparedSolid(Octree(5)), motions, Meaning::exact), Error);
 }
 
 // Large enough for bounds in units of several voxels, and for planes to matter.
