@@ -8,6 +8,7 @@
 
 #include "blackleaf/align.h"
 #include "blackleaf/contact.h"
+#include "blackleaf/distance.h"
 #include "blackleaf/error.h"
 #include "blackleaf/move.h"
 #include "blackleaf/resample.h"
@@ -24,8 +25,16 @@ namespace {
 struct Answer {
   bool interferes = false;
   std::optional<std::uint64_t> overlap;  // voxels; none in exact mode
-  std::optional<Distance> apart;         // none in exact mode, when they interfere or when one is empty
+  std::optional<MovedDistance> apart;    // none when they interfere or when one is empty
 };
+
+// Two nearest points of two octrees of one universe.
+std::optional<MovedDistance> apart(const Octree& a, const Octree& b) {
+  const std::optional<Distance> found = distance(a, b);
+  if (!found) return std::nullopt;
+  const auto point = [](const std::array<std::int32_t, 3>& p) { return Eigen::Vector3d(p[0], p[1], p[2]); };
+  return MovedDistance{found->voxels, point(found->on_a), point(found->on_b)};
+}
 
 // B where it is after its motion, as far as the universe holds it.
 Octree moved(Session& session, const Octree& b, const Motion& motion, const std::string& name) {
@@ -47,7 +56,7 @@ Json as_json(const Answer& answer, bool exact) {
                  {"distance", nullptr},
                  {"mode", exact ? "exact" : "voxelised"}};
   if (answer.overlap) report["overlap_volume"] = *answer.overlap;
-  if (answer.interferes && !exact) report["distance"] = 0.0;
+  if (answer.interferes) report["distance"] = 0.0;
   if (answer.apart) report["distance"] = answer.apart->voxels;
   return report;
 }
@@ -57,10 +66,12 @@ std::string as_text(const Answer& answer) {
     return answer.overlap ? fmt::format("they interfere: the overlap is {}\n", counted(*answer.overlap, "voxel"))
                           : "they interfere\n";
   if (!answer.apart) return "they do not interfere\n";
-  const auto& [voxels, squared, a, b] = *answer.apart;
-  if (squared == 0) return fmt::format("they do not interfere, but touch at ({}, {}, {})\n", a[0], a[1], a[2]);
-  return fmt::format("they do not interfere: {:.10g} voxels apart, from ({}, {}, {}) to ({}, {}, {})\n", voxels, a[0],
-                     a[1], a[2], b[0], b[1], b[2]);
+  const auto point = [](const Eigen::Vector3d& p) {
+    return fmt::format("({:.10g}, {:.10g}, {:.10g})", p.x(), p.y(), p.z());
+  };
+  const auto& [voxels, on_a, on_b] = *answer.apart;
+  if (voxels == 0) return fmt::format("they do not interfere, but touch at {}\n", point(on_a));
+  return fmt::format("they do not interfere: {:.10g} voxels apart, from {} to {}\n", voxels, point(on_a), point(on_b));
 }
 
 // A and B as they are compared: in one universe.
@@ -124,8 +135,8 @@ int run_collide(Session& session) {
   add_octree_input(session.app(), "A", first_name);
   add_octree_input(session.app(), "B", second_name, "octree file of the same depth");
   motion_options.add_to(session.app(), "B");
-  CLI::Option* exact_flag = session.app().add_flag(
-      "--exact", exact, "take the moved B as tilted cubes, not as voxels; no volume or distance");
+  CLI::Option* exact_flag =
+      session.app().add_flag("--exact", exact, "take the moved B as tilted cubes, not as voxels; no volume");
   CLI::Option* poses = add_text(session.app(), "--poses", poses_name, "FILE",
                                 "ask at many poses of B: one a line, x,y,z or x,y,z@x,y,z:degrees, or a path in JSON");
   add_text(session.app(), "-o,--output", output, "OUT", "write the octree of what they share")
@@ -160,13 +171,16 @@ int run_collide(Session& session) {
   Answer answer;
   if (exact) {
     const Motion motion = motion_options.motion(b);
-    answer.interferes = session.stage("collide", [&](const Work&) { return interferes(a, b, motion, Meaning::exact); });
+    session.stage("collide", [&](const Work&) {
+      answer.interferes = interferes(a, b, motion, Meaning::exact);
+      if (!answer.interferes) answer.apart = distance(a, b, motion);
+    });
   } else {
     const Octree target = motion_options.given() ? moved(session, b, motion_options.motion(b), second_name) : b;
     session.stage("collide", [&](const Work&) {
       answer.overlap = overlap_volume(a, target);
       answer.interferes = *answer.overlap > 0;
-      if (!answer.interferes) answer.apart = distance(a, target);
+      if (!answer.interferes) answer.apart = apart(a, target);
     });
     if (output) {
       const Octree common = session.stage("overlap", [&](const Work& work) { return intersect(a, target, work); });
