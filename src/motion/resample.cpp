@@ -34,7 +34,8 @@ void look(const Node& node, const Cube& cube, const Place& low, const Place& hig
 
 Octree resampled(const Octree& octree, const Frame& frame, int depth, const Work& work) {
   const Frame& own = octree.frame();
-  if (own.unit != frame.unit)
+  const auto unknown = [](const Frame& f) { return f.unit == "unit" || f.unit == "voxel"; };
+  if (own.unit != frame.unit && !unknown(own) && !unknown(frame))
     throw Error(ErrorCode::bad_argument,
                 "one octree is measured in '" + own.unit + "' and the other in '" + frame.unit + "'",
                 "give both the same unit");

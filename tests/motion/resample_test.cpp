@@ -48,7 +48,10 @@ TEST(Resample, KeepsWhatItCan) {
   EXPECT_EQ(resampled(finer, octree.frame(), 4), octree);
   Frame other = octree.frame();
   other.unit = "mm";
-  EXPECT_THROW(resampled(octree, other, 4), Error);
+  EXPECT_EQ(resampled(octree, other, 4), octree);  // of a bare octree nobody knows the unit
+  Frame inches = other;
+  inches.unit = "inch";
+  EXPECT_THROW(resampled(octree.with_frame(inches), other, 4), Error);
   other = octree.frame();
   other.axes.col(0).setZero();
   EXPECT_THROW(resampled(octree, other, 4), Error);
