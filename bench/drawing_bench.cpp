@@ -1,9 +1,11 @@
 // draw/INPUT/tT: the exact line drawing seen from (12, -16, 15). ball32 is the ball of radius 32 about a lattice point.
+// perspective/SIDE/tT: the same seen by an eye in that direction, two sides of the universe away from its middle.
 // svg/SIDE: a drawing of the bunny as SVG text, svg-bytes/SIDE its size; order/SIDE: its strokes joined and ordered for
 // a pen.
 #include "blackleaf/drawing.h"
 #include "blackleaf/implicit.h"
 #include "blackleaf/pen_order.h"
+#include "blackleaf/perspective.h"
 #include "blackleaf/picture.h"
 #include "contenders.h"
 #include "inputs.h"
@@ -25,6 +27,12 @@ Octree ball_of_radius(int radius) {
 
 void ours(benchmark::State& state, const Octree& octree, int threads) {
   for (auto _ : state) benchmark::DoNotOptimize(draw(octree, the_view(), {threads, {}}));
+}
+
+void from_an_eye(benchmark::State& state, const Octree& octree, int threads) {
+  const Eigen::Vector3d middle = Eigen::Vector3d::Constant(octree.side() / 2.0);
+  const Perspective perspective(middle + 2 * octree.side() * Eigen::Vector3d(12, -16, 15) / 25, middle);
+  for (auto _ : state) benchmark::DoNotOptimize(draw(octree, perspective, {threads, {}}));
 }
 
 void svg(benchmark::State& state, const Octree& octree) {
@@ -58,6 +66,8 @@ void add_drawing() {
       const std::string key = "draw/" + side_name(depth) + suffix;
       contender(key, "ours", [=](benchmark::State& s) { ours(s, bunny(depth), threads); });
       if (threads == 1 && depth <= 7) contender(key, "paper", [=](benchmark::State& s) { paper(s, bunny(depth)); });
+      contender("perspective/" + side_name(depth) + suffix, "ours",
+                [=](benchmark::State& s) { from_an_eye(s, bunny(depth), threads); });
     }
     for (const int radius : {8, 16, 32, 64}) {
       const std::string key = "draw/ball" + std::to_string(radius) + suffix;

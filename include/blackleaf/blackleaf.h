@@ -27,6 +27,7 @@
 #include "blackleaf/path.h"
 #include "blackleaf/path_file.h"
 #include "blackleaf/pen_order.h"
+#include "blackleaf/perspective.h"
 #include "blackleaf/picture.h"
 #include "blackleaf/points.h"
 #include "blackleaf/points_file.h"

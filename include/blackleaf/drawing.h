@@ -4,12 +4,19 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "blackleaf/octree.h"
 #include "blackleaf/work.h"
 
 namespace blackleaf {
+
+/// From where a perspective picture is seen (perspective.h): voxels, radians.
+struct EyePoint {
+  Eigen::Vector3d eye, target;
+  double field_of_view = 0;
+};
 
 /// A parallel projection. The viewer is at infinity in direction d; right u = up x d normalised, v = d x u, up is +z,
 /// or +y when d is parallel to z. A point p lands at (u.p, v.p), voxel units, v upward.
@@ -24,10 +31,15 @@ class View {
   const std::array<std::int64_t, 3>& direction() const { return direction_; }
   const Eigen::Vector3d& right() const { return right_; }
   const Eigen::Vector3d& up() const { return up_; }
+  /// For the screen of a perspective drawing, Perspective::view(): from where it is seen. Drawings tell it;
+  /// draw(octree, view) takes no notice of it.
+  const std::optional<EyePoint>& eye_point() const { return eye_point_; }
 
  private:
+  friend class Perspective;
   std::array<std::int64_t, 3> direction_{};
   Eigen::Vector3d right_, up_;
+  std::optional<EyePoint> eye_point_;
 };
 
 /// A maximal straight visible piece of the drawing, from end to end.

@@ -113,7 +113,8 @@ std::string to_svg(const Picture& picture);
 std::string to_svg(const LineDrawing& drawing, const PageOptions& page = {});
 
 /// JSON text: {"view": [x,y,z], "right": [..], "up": [..], "strokes": [[[u,v],[u,v]],...]}, voxel units, numbers that
-/// give the same doubles back. Throws Error(bad_argument) for points that are not finite.
+/// give the same doubles back; after "up" perspective drawings have "eye" and "target". Throws Error(bad_argument) for
+/// points that are not finite.
 std::string to_json(const LineDrawing& drawing);
 std::string to_json(const Polylines& strokes, const View& view);
 /// The same for layers in voxels: {"view", "right", "up", "layers": [{"name": "..", "colour": "#rrggbb", "width": mm,

@@ -70,6 +70,23 @@ constexpr std::uint64_t chosen(EdgeChoice choice, const EdgeFamily& family, std:
   return candidates(family, A, B, C, D);
 }
 
+/// Calls sink(first, end) for the runs of a brick's edges along an axis: from corner `first` to coordinate `end`.
+template <class Sink>
+void for_each_run(unsigned axis, const Cube& cube, std::uint64_t edges, const Sink& sink) {
+  if (edges == 0) return;
+  const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};
+  for (std::uint64_t starts = edges & ~moved_up(edges, 0, axis); starts; starts &= starts - 1) {
+    const auto bit = static_cast<unsigned>(std::countr_zero(starts));
+    const std::array<unsigned, 3> at = {brick_x(bit), brick_y(bit), brick_z(bit)};
+    const unsigned line = bit & ~(9u << axis);  // the line's edge with coordinate 0
+    unsigned end = at[axis] + 1;
+    while (end < 4 && (edges >> (line | unsigned{kSpread[end]} << axis) & 1)) ++end;
+    std::array<std::int32_t, 3> first{};
+    for (unsigned i = 0; i < 3; ++i) first[i] = corner[i] + static_cast<std::int32_t>(at[i]);
+    sink(first, corner[axis] + static_cast<std::int32_t>(end));
+  }
+}
+
 /// Visitor for corner_walk. Calls sink(family index, a0, a1, b, c) for runs [a0, a1] of the chosen edges, each edge
 /// once; not for edges seen end-on.
 template <class Sink>
@@ -100,25 +117,13 @@ class FeatureEdges {
       const std::uint64_t C = moved_up(A, low_c, f.c);
       const std::uint64_t D = moved_up(B, moved_up(low_c, around[7 - b - c].brick(), f.b), f.c);
       const std::uint64_t edges = chosen(choice_, f, A, B, C, D);
-      if (edges) runs(axis, cube, edges);
+      for_each_run(axis, cube, edges, [&](const std::array<std::int32_t, 3>& first, std::int32_t end) {
+        sink_(axis, first[f.a], end, first[f.b], first[f.c]);
+      });
     }
   }
 
  private:
-  void runs(unsigned axis, const Cube& cube, std::uint64_t edges) {
-    const EdgeFamily& f = families_[axis];
-    for (std::uint64_t starts = edges & ~moved_up(edges, 0, axis); starts; starts &= starts - 1) {
-      const auto first = static_cast<unsigned>(std::countr_zero(starts));
-      const std::array<unsigned, 3> at = {brick_x(first), brick_y(first), brick_z(first)};
-      const unsigned line = first & ~(9u << axis);  // the line's edge with coordinate 0
-      unsigned end = at[axis] + 1;
-      while (end < 4 && (edges >> (line | unsigned{kSpread[end]} << axis) & 1)) ++end;
-      const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};
-      const auto place = [&](unsigned i) { return corner[i] + static_cast<std::int32_t>(at[i]); };
-      sink_(axis, place(f.a), corner[f.a] + static_cast<std::int32_t>(end), place(f.b), place(f.c));
-    }
-  }
-
   const std::array<EdgeFamily, 3>& families_;
   Sink& sink_;
   EdgeChoice choice_;

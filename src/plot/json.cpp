@@ -44,6 +44,11 @@ void put_view(TextBuffer& out, const View& view) {
   put_numbers(out, view.right());
   out.put(", \"up\": ");
   put_numbers(out, view.up());
+  if (!view.eye_point()) return;
+  out.put(", \"eye\": ");
+  put_numbers(out, view.eye_point()->eye);
+  out.put(", \"target\": ");
+  put_numbers(out, view.eye_point()->target);
 }
 
 void put_strokes(TextBuffer& out, const Polylines& lines) {

@@ -37,6 +37,11 @@ void put_header(TextBuffer& out, const Picture& picture) {
     if (!placed.name.empty()) out.put(fmt::format(" name=\"{}\"", escaped(placed.name)));
     if (!picture.source.empty()) out.put(fmt::format(" source=\"{}\"", escaped(picture.source)));
     // Adding 0 turns -0 into 0.
+    if (placed.view.eye_point()) {
+      const Eigen::Vector3d &eye = placed.view.eye_point()->eye, &target = placed.view.eye_point()->target;
+      out.put(fmt::format(" eye=\"{} {} {}\" target=\"{} {} {}\"", eye[0] + 0, eye[1] + 0, eye[2] + 0, target[0] + 0,
+                          target[1] + 0, target[2] + 0));
+    }
     out.put(
         fmt::format(" view=\"{} {} {}\" right=\"{} {} {}\" up=\"{} {} {}\" millimetres-per-voxel=\"{}\" "
                     "origin=\"{} {}\"/>",

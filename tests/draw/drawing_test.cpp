@@ -10,39 +10,20 @@
 #include "blackleaf/error.h"
 #include "blackleaf/implicit.h"
 #include "reference/dense_drawing.h"
+#include "reference/placed.h"
 
 namespace blackleaf {
 namespace {
 
 using reference::DenseGrid;
 using reference::difference;
+using reference::placed;
 
 std::vector<Stroke> shifted(std::vector<Stroke> strokes, const View& view, const Eigen::Vector3d& by,
                             double scale = 1) {
   const Eigen::Vector2d shift(view.right().dot(by), view.up().dot(by));
   for (Stroke& s : strokes) s = {scale * s.from + shift, scale * s.to + shift};
   return strokes;
-}
-
-// The same solid, `factor` times as large, moved by `by` in another universe.
-Octree placed(const DenseGrid& grid, int depth, std::int32_t factor, const std::array<std::int32_t, 3>& by) {
-  const std::int32_t side = grid.side() * factor;
-  return octree_from_classifier(depth, [&, side](const Cube& cube) {
-    const std::array<std::int32_t, 3> low = {cube.x - by[0], cube.y - by[1], cube.z - by[2]};
-    std::array<std::int32_t, 3> first{}, last{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (low[i] + cube.side() <= 0 || low[i] >= side) return Colour::white;
-      first[i] = (low[i] < 0 ? low[i] - factor + 1 : low[i]) / factor;
-      const std::int32_t end = low[i] + cube.side() - 1;
-      last[i] = end / factor;
-    }
-    if (last[0] - first[0] > 1 || last[1] - first[1] > 1 || last[2] - first[2] > 1) return Colour::gray;
-    bool some = false, all = true;
-    for (int z = first[2]; z <= last[2]; ++z)
-      for (int y = first[1]; y <= last[1]; ++y)
-        for (int x = first[0]; x <= last[0]; ++x) (grid.at(x, y, z) ? some : all) = grid.at(x, y, z);
-    return !some ? Colour::white : all ? Colour::black : Colour::gray;
-  });
 }
 
 double projected(const View& view, const Eigen::Vector3d& edge) {

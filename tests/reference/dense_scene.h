@@ -30,6 +30,18 @@ class DenseScene {
     return all;
   }
 
+  static bool is_feature(const DenseGrid& grid, std::size_t axis, const std::array<int, 3>& at) {
+    const auto black = [&](int b, int c) {
+      std::array<int, 3> voxel = at;
+      voxel[(axis + 1) % 3] -= b;
+      voxel[(axis + 2) % 3] -= c;
+      return grid.at(voxel[0], voxel[1], voxel[2]);
+    };
+    const bool along_b = black(0, 0) == black(1, 0) && black(0, 1) == black(1, 1);
+    const bool along_c = black(0, 0) == black(0, 1) && black(1, 0) == black(1, 1);
+    return !along_b && !along_c;
+  }
+
  private:
   // A place on a picture line: u and v times the unnormalised axes, over a denominator.
   struct Place {
@@ -52,18 +64,6 @@ class DenseScene {
     return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
   }
   static Wide dot(const Vector& p, const Vector& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
-
-  static bool is_feature(const DenseGrid& grid, std::size_t axis, const std::array<int, 3>& at) {
-    const auto black = [&](int b, int c) {
-      std::array<int, 3> voxel = at;
-      voxel[(axis + 1) % 3] -= b;
-      voxel[(axis + 2) % 3] -= c;
-      return grid.at(voxel[0], voxel[1], voxel[2]);
-    };
-    const bool along_b = black(0, 0) == black(1, 0) && black(0, 1) == black(1, 1);
-    const bool along_c = black(0, 0) == black(0, 1) && black(1, 0) == black(1, 1);
-    return !along_b && !along_c;
-  }
 
   void draw_axis(std::size_t solid, std::size_t axis) {
     const Wide d_b = d_[(axis + 1) % 3], d_c = d_[(axis + 2) % 3];
