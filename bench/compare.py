@@ -100,7 +100,7 @@ def measure(program, key, contenders, repetitions, min_time):
     report = json.loads(text)
     found = re.search(r"/t(\d+)$", key)
     threads = int(found[1]) if found else 1
-    values, unit = collections.OrderedDict(), "s"
+    values, unit, edges = collections.OrderedDict(), "s", None
     for run in report["benchmarks"]:
         contender = contender_of(run["name"])
         if run.get("run_type") != "iteration" or not contender:
@@ -109,8 +109,12 @@ def measure(program, key, contenders, repetitions, min_time):
             fail(f"{run['name']}: {run.get('error_message', 'failed')}")
         value, unit = value_of(run, threads)
         values.setdefault(contender[1], []).append(value)
-    medians = {who: float(f"{statistics.median(v):.4g}") for who, v in sorted(values.items(), key=lambda item: contenders.index(item[0]))}
+        edges = int(run.get("edges", 0)) or edges  # of a drawing: unit feature edges of its solid
+    digits = 4 if unit == "s" else 12  # what is counted is exact
+    medians = {who: float(f"{statistics.median(v):.{digits}g}") for who, v in sorted(values.items(), key=lambda item: contenders.index(item[0]))}
     result = {who: medians.pop(who) for who in ("ours", "ours_p95") if who in medians}
+    if edges:
+        result["edges"] = edges
     return {**result, "peers": medians, "unit": unit, "threads": threads}
 
 

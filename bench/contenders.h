@@ -66,5 +66,6 @@ void add_openvdb_translate();
 void add_openvdb_sets();
 void add_octomap();
 void add_fcl();
+void add_opencascade();
 
 }  // namespace blackleaf::bench

@@ -25,6 +25,14 @@ class Figures:
         speedup = self.ours(f"{key}/t1") / self.ours(f"{key}/t2")
         return max(speedup / 1.8, 1.4 * self.times(f"{key}/t2", "read"))
 
+    def an_edge(self, key):
+        """Seconds a unit feature edge."""
+        return self.ours(key) / self.results[key]["edges"]
+
+    def error(self, key, who):
+        """Relative difference."""
+        return abs(self.times(key, who) - 1)
+
     def growth(self, smaller, larger):
         return self.ours(larger) / self.ours(smaller)
 
@@ -93,6 +101,20 @@ def demands():
            "at least", 1.8)
     yield "query/512: in OpenVDB's getValue", lambda f: 1 / f.times("query/512", "openvdb"), "at most", 1.2
     yield "ray/1024: OctoMap castRay", lambda f: f.times("ray/1024", "octomap"), "at least", 10
+    yield "draw/256/t1: us a unit feature edge", lambda f: f.an_edge("draw/256/t1") / 1e-6, "at most", 1
+    yield "draw/256: two threads", lambda f: f.ours("draw/256/t1") / f.ours("draw/256/t2"), "at least", 1.8
+    yield "draw/1024/t1: an edge, times that at 256", lambda f: f.an_edge("draw/1024/t1") / f.an_edge("draw/256/t1"), "at most", 1.5
+    yield "draw/1024/t1: seconds", lambda f: f.ours("draw/1024/t1"), "at most", 5
+    for radius, poly in ((32, 20), (64, 60)):
+        key = f"draw/ball{radius}/t1"
+        yield f"{key}: OpenCASCADE, triangles", lambda f, k=key: f.times(k, "opencascade-poly"), "at least", poly
+        yield f"{key}: VA88 as printed", lambda f, k=key: f.times(k, "paper"), "at least", 1000
+    for radius in (8, 16, 32):
+        key = f"length/ball{radius}"
+        yield f"{key}: off OpenCASCADE's exact one", lambda f, k=key: f.error(k, "opencascade-exact"), "at most", 1e-6
+    yield "length/ball8: off 453.924338", lambda f: abs(f.ours("length/ball8") - 453.924338), "at most", 1e-6
+    key = "draw-memory/1024"
+    yield f"{key}: of strokes and octree", lambda f, k=key: 1 / f.times(k, "strokes+octree"), "at most", 4
     yield "svg/1024: MB/s", lambda f: f.ours("svg-bytes/1024") / f.ours("svg/1024") / MEGABYTE, "at least", 100
     yield "curve/decode: ns", lambda f: f.ours("curve/decode") / NANOSECOND, "at most", 12
     yield "curve/encode: ns", lambda f: f.ours("curve/encode") / NANOSECOND, "at most", 12

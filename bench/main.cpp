@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   add_openvdb_sets();
   add_octomap();
   add_fcl();
+  add_opencascade();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {

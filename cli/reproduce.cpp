@@ -24,8 +24,20 @@ struct Maker {
 };
 
 // In the order of the page.
-constexpr std::array<Maker, 3> kExhibits = {
-    {{"figure 4", an84_figure_4}, {"table 1", wa87_table_1}, {"table 2", wa87_table_2}}};
+constexpr std::array<Maker, 14> kExhibits = {{{"figures", an84_figure_2},
+                                              {"figures", an84_figure_3},
+                                              {"figures", an84_figure_4},
+                                              {"table 1", wa87_table_1},
+                                              {"table 2", wa87_table_2},
+                                              {"figures", mhf92_figure_1},
+                                              {"drawings", [](const Work& work) { return va88_figure(5, work); }},
+                                              {"drawings", [](const Work& work) { return va88_figure(6, work); }},
+                                              {"drawings", [](const Work& work) { return va88_figure(7, work); }},
+                                              {"drawings", [](const Work& work) { return va88_figure(8, work); }},
+                                              {"drawings", [](const Work& work) { return va88_figure(9, work); }},
+                                              {"drawings", [](const Work& work) { return va88_figure(10, work); }},
+                                              {"drawings", [](const Work& work) { return va88_figure(11, work); }},
+                                              {"times", va88_figure_12}}};
 
 void make_folder(const std::string& folder) {
   std::error_code error;

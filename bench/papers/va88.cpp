@@ -132,6 +132,8 @@ class Screen {
   bool shows(std::size_t axis) const { return toward_[axis] > 0; }  // the upper face along an axis
   bool is_general() const { return toward_[0] > 0 && toward_[1] > 0 && toward_[2] > 0; }
   const std::vector<Side>& sides() const { return sides_; }
+  /// By how much a point comes nearer to each side's outside for one voxel along an axis.
+  const std::array<double, 6>& slopes(std::size_t axis) const { return slopes_[axis]; }
 
  private:
   // The outline of the unit cube: a hexagon, or a rectangle when the viewer is in a coordinate plane. Each of its sides
@@ -148,18 +150,24 @@ class Screen {
       }
     }
     assert(sides_.size() == 4 || sides_.size() == 6);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t k = 0; k < sides_.size(); ++k) slopes_[axis][k] = sides_[k].normal.dot(axes_[axis]);
   }
 
   std::array<Eigen::Vector2d, 3> axes_;
   std::array<double, 3> toward_{};
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   std::vector<Side> sides_;
+  std::array<std::array<double, 6>, 3> slopes_{};
 };
 
 class Drawer {
  public:
-  Drawer(const Octree& octree, const Eigen::Vector3d& direction)
-      : tree_(octree, direction), screen_(direction, octree.side()), epsilon_(1e-10 * octree.side()) {}
+  Drawer(const Octree& octree, const Eigen::Vector3d& direction, Comparing comparing)
+      : tree_(octree, direction),
+        screen_(direction, octree.side()),
+        comparing_(comparing),
+        epsilon_(1e-10 * octree.side()) {}
 
   Drawing run() {
     traverse(tree_.root(), {0, 0, 0}, tree_.side());
@@ -298,12 +306,15 @@ class Drawer {
     for (std::size_t later = 0; later < boxes_.size(); ++later)
       for (std::size_t earlier = 0; earlier < later; ++earlier) {
         ++drawing_.comparisons;
-        const Box &x = boxes_[earlier], &y = boxes_[later];
-        const Eigen::Array2d margin(epsilon_, epsilon_);
-        if ((x.low.array() > y.high.array() + margin).any() || (y.low.array() > x.high.array() + margin).any())
-          continue;
+        const Box& x = boxes_[earlier];
+        if (comparing_ == Comparing::extents && apart(x, boxes_[later])) continue;
         for (BoxEdge& edge : boxes_[later].edges) hide(edge, x);
       }
+  }
+
+  bool apart(const Box& x, const Box& y) const {
+    const Eigen::Array2d margin(epsilon_, epsilon_);
+    return (x.low.array() > y.high.array() + margin).any() || (y.low.array() > x.high.array() + margin).any();
   }
 
   void hide(BoxEdge& edge, const Box& by) {
@@ -320,14 +331,13 @@ class Drawer {
   // side that the point is not strictly within.
   std::optional<Edge> clip(const BoxEdge& edge, const Edge& segment, const Box& by) const {
     const auto& sides = screen_.sides();
-    const Eigen::Vector2d& along = screen_.axis(edge.axis);
+    const auto& slopes = screen_.slopes(edge.axis);
     std::array<double, 6> at_min{}, at_max{};
     unsigned code_min = 0, code_max = 0;
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const double begin = sides[k].normal.dot(edge.on_screen - by.corner) - sides[k].offset * by.len;
-      const double slope = sides[k].normal.dot(along);
-      at_min[k] = begin + segment.min * slope;
-      at_max[k] = begin + segment.max * slope;
+      at_min[k] = begin + segment.min * slopes[k];
+      at_max[k] = begin + segment.max * slopes[k];
       code_min |= (at_min[k] >= -epsilon_ ? 1u : 0u) << k;
       code_max |= (at_max[k] >= -epsilon_ ? 1u : 0u) << k;
     }
@@ -426,6 +436,7 @@ class Drawer {
 
   RelabelledTree tree_;
   Screen screen_;
+  Comparing comparing_;
   double epsilon_;  // voxels: what counts as nothing
   std::vector<Box> boxes_;
   Drawing drawing_;
@@ -439,9 +450,9 @@ double Drawing::length() const {
   return sum;
 }
 
-Drawing draw(const Octree& octree, const Eigen::Vector3d& direction) {
+Drawing draw(const Octree& octree, const Eigen::Vector3d& direction, Comparing comparing) {
   assert(direction.allFinite() && !direction.isZero(0));
-  return Drawer(octree, direction).run();
+  return Drawer(octree, direction, comparing).run();
 }
 
 }  // namespace blackleaf::papers::va88

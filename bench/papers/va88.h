@@ -5,6 +5,13 @@
 // the projections of all boxes earlier in the list (sections 2.1 and 2.2): quadratic in the number of boxes. At last
 // contiguous segments are joined (section 2.3).
 //
+// How a box is compared with one before it can be read in two ways. Section 2.2: "each edge of a projected octant is
+// tested for intersection with projections of all other octants whose graphics nodes occur earlier in the list", by the
+// bit codes of its ends; nothing else is said to come before that. But a BOX also stores the extremes of its projection
+// (section 2.4), whose use is not told, and section 3.2 says that "extra processing is required at a node if its screen
+// projection overlaps the screen projections of other nodes": both would do for a test of extents. Both readings are
+// here; they draw the same, and both are quadratic.
+//
 // Where the paper is silent: neighbours are found by descent from the root instead of by threads; a view along an axis
 // or in a coordinate plane projects cubes to rectangles, and a line of sight within the plane of two faces that touch
 // is blocked there. Segments are joined wherever they meet in the picture, not only in neighbouring octants.
@@ -22,6 +29,11 @@
 
 namespace blackleaf::papers::va88 {
 
+enum class Comparing {
+  every_edge,  // section 2.2 to the letter
+  extents,     // edges only where the upright rectangles around the two projections overlap
+};
+
 struct Segment {
   Eigen::Vector2d from, to;
 };
@@ -36,6 +48,6 @@ struct Drawing {
 
 /// The drawing seen from `direction`, toward the viewer. Requires: direction is finite and not zero.
 /// O(boxes^2) time, at most one box a black leaf.
-Drawing draw(const Octree& octree, const Eigen::Vector3d& direction);
+Drawing draw(const Octree& octree, const Eigen::Vector3d& direction, Comparing comparing = Comparing::every_edge);
 
 }  // namespace blackleaf::papers::va88

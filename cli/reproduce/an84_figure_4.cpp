@@ -6,6 +6,7 @@
 #include "blackleaf/drawing_file.h"
 #include "blackleaf/implicit.h"
 #include "blackleaf/move.h"
+#include "canvas.h"
 #include "exhibit.h"
 #include "papers/an84.h"
 
@@ -34,9 +35,6 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-// The part of an SVG file from its <svg ...> on, to stand in another.
-std::string inner_svg(const std::string& svg) { return svg.substr(svg.find("<svg ")); }
-
 }  // namespace
 
 Exhibit an84_figure_4(const Work& work) {
@@ -61,27 +59,19 @@ Exhibit an84_figure_4(const Work& work) {
   // Millimetres: a column each, the drawing above its list.
   constexpr double kColumn = 95, kTop = 66, kLine = 4;
   const double height = kTop + kLine * (static_cast<double>(std::max(lists[0].size(), lists[1].size())) + 2);
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}mm\" height=\"{1}mm\" viewBox=\"0 0 {0} {1}\">\n",
-      2 * kColumn, height);
+  Canvas canvas(2 * kColumn, height);
   for (std::size_t i = 0; i < 2; ++i) {
     const double x = kColumn * static_cast<double>(i);
-    svg += fmt::format("<g transform=\"translate({} 0)\">\n", x);
-    // The drawing says its size in millimetres, which are this figure's units.
-    std::string drawing = inner_svg(to_svg(drawings[i], page));
-    drawing.replace(drawing.find("width=\"60mm\" height=\"60mm\""), 26, "width=\"60\" height=\"60\"");
-    svg += drawing;
-    svg += fmt::format("<text x=\"2\" y=\"{}\" font-family=\"serif\" font-size=\"3.6\">{}</text>\n", kTop, captions[i]);
+    canvas.figure({x, 0}, to_svg(drawings[i], page));
+    canvas.text({x + 2, kTop}, captions[i], 3.6);
     double y = kTop + 2 * kLine;
     for (const std::string& line : lists[i]) {
       const std::size_t indent = line.find_first_not_of(' ');
-      svg += fmt::format("<text x=\"{}\" y=\"{}\" font-family=\"monospace\" font-size=\"3\">{}</text>\n",
-                         2 + 2.2 * static_cast<double>(indent), y, line.substr(indent));
+      canvas.text({x + 2 + 2.2 * static_cast<double>(indent), y}, line.substr(indent), 3, Canvas::Anchor::start,
+                  "monospace");
       y += kLine;
     }
-    svg += "</g>\n";
   }
-  svg += "</svg>\n";
 
   exhibit.body =
       paragraph(
@@ -95,8 +85,8 @@ Exhibit an84_figure_4(const Work& work) {
                       "begins with {} nodes and ends with {}, {} of them at most at once; the {} that remain are "
                       "those of our translation, bit for bit.",
                       nodes_before, tree.nodes(), tree.peak_nodes(), lists[1].size())) +
-      svg;
-  exhibit.files = {{"an84-figure-4.svg", "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg},
+      canvas.svg();
+  exhibit.files = {{"an84-figure-4.svg", canvas.file()},
                    {"an84-figure-4a.txt", joined(lists[0])},
                    {"an84-figure-4b.txt", joined(lists[1])}};
   exhibit.drawings = {{"an84-figure-4a.png", drawings[0], page}, {"an84-figure-4b.png", drawings[1], page}};

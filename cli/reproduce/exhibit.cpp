@@ -16,6 +16,7 @@ table { border-collapse: collapse; font: 14px/1.4 sans-serif; margin: 1em 0; dis
 caption { text-align: left; font-style: italic; padding-bottom: .5em; }
 th, td { border: 1px solid #bbb; padding: .2em .6em; text-align: right; } th { background: #eee; }
 td:last-child { text-align: left; } svg { max-width: 100%; height: auto; } nav a { margin-right: 1.5em; }
+figure { margin: 1em 0; } figcaption svg { margin: 0 .5em .5em 0; }
 )";
 
 // A value as CSV has it (RFC 4180).

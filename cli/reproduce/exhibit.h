@@ -47,6 +47,17 @@ Exhibit wa87_table_2(const Work& work);
 /// AN84's Figure 4: the nodes of an object before and after a translation.
 Exhibit an84_figure_4(const Work& work);
 
+/// AN84's Figure 2: an object, the division of its universe, its octree.
+Exhibit an84_figure_2(const Work& work);
+/// AN84's Figure 3: the octrees of a voxel before and after translations.
+Exhibit an84_figure_3(const Work& work);
+/// MHF92's Figure 1: the curves M_0, M_1 and M_2.
+Exhibit mhf92_figure_1(const Work& work);
+/// VA88's Figures 5 to 11: drawings of octrees made from silhouettes.
+Exhibit va88_figure(int figure, const Work& work);
+/// VA88's Figure 12: the time a drawing takes, measured, against the nodes of the octree.
+Exhibit va88_figure_12(const Work& work);
+
 /// The page of all exhibits: one HTML file that needs no other.
 std::string html_page(const std::vector<Exhibit>& exhibits);
 

@@ -1,6 +1,7 @@
 // Silhouettes from files: pictures and where they were taken from.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -34,5 +35,9 @@ SilhouetteSet read_silhouettes(const std::filesystem::path& path, std::optional<
 /// values in the file: gamma and colour profiles are not applied. Throws as above; images of 2^28 pixels or more are
 /// refused.
 void read_silhouette_image(const std::filesystem::path& path, Silhouette& silhouette);
+
+/// A PNG image of the silhouette's pixels, white where there is object and black elsewhere; read_silhouette_image()
+/// gives the same pixels back. Requires: as many pixels as width x height, one at least.
+std::vector<std::uint8_t> to_png(const Silhouette& silhouette);
 
 }  // namespace blackleaf

@@ -2,6 +2,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <memory>
 #include <string>
@@ -94,6 +95,28 @@ void read_silhouette_image(const std::filesystem::path& path, Silhouette& silhou
   silhouette.pixels.resize(static_cast<std::size_t>(pixels));
   const std::size_t channel = see_through ? 1 : 0;
   for (std::size_t i = 0; i < silhouette.pixels.size(); ++i) silhouette.pixels[i] = values[2 * i + channel] > 127;
+}
+
+std::vector<std::uint8_t> to_png(const Silhouette& silhouette) {
+  assert(silhouette.width > 0 && silhouette.height > 0);
+  assert(silhouette.pixels.size() ==
+         static_cast<std::size_t>(silhouette.width) * static_cast<std::size_t>(silhouette.height));
+  std::vector<std::uint8_t> values(silhouette.pixels.size());
+  std::transform(silhouette.pixels.begin(), silhouette.pixels.end(), values.begin(),
+                 [](std::uint8_t pixel) { return pixel != 0 ? std::uint8_t{255} : std::uint8_t{0}; });
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(silhouette.width);
+  image.height = static_cast<png_uint_32>(silhouette.height);
+  image.format = PNG_FORMAT_GRAY;
+  const std::unique_ptr<png_image, Freer> freer(&image);
+  std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(image));  // more than it takes
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, values.data(), 0, nullptr) == 0)
+    throw Error(ErrorCode::bad_argument, "a silhouette cannot be written as PNG: " + reason(image.message),
+                "make it smaller");
+  bytes.resize(size);
+  return bytes;
 }
 
 }  // namespace blackleaf

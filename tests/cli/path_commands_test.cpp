@@ -1,4 +1,4 @@
-// sweep, animate and reproduce, as a user runs them.
+// sweep and animate, as a user runs them.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -211,59 +211,6 @@ TEST_F(PathCommands, PercentSignsMayBeInFrameNames) {
   make_box("o.octree", 3, {0, 0, 0}, {4, 4, 4});
   done({"animate", "o.octree", "--path", "-", "-o", "50%%of%d.octree", "--frames", "1"}, R"({"poses": [{"time": 0}]})");
   EXPECT_EQ(files(), (std::vector<std::string>{"50%of1.octree", "o.octree"}));
-}
-
-TEST_F(PathCommands, ReproduceWritesThePapersTables) {
-  const nlohmann::json report = done({"reproduce", "-o", "papers", "--json"}).json();
-  const std::vector<std::string> expected = {"an84-figure-4.svg",         "an84-figure-4a.txt",
-                                             "an84-figure-4b.txt",        "an84-figure-4a.png",
-                                             "an84-figure-4b.png",        "wa87-table-1-bounds.csv",
-                                             "wa87-table-1-measured.csv", "wa87-table-2a.csv",
-                                             "wa87-table-2b.csv",         "index.html"};
-  EXPECT_EQ(report["files"], expected);
-  const std::string page = read("papers/index.html");
-  for (const std::string& name : expected) EXPECT_FALSE(read("papers/" + name).empty()) << name;
-  for (const char* id : {"an84-figure-4", "wa87-table-1", "wa87-table-2"})
-    EXPECT_NE(page.find(std::string("<section id=\"") + id), std::string::npos);
-  EXPECT_EQ(page.find("src="), std::string::npos) << "the page needs no other file";
-
-  // WA87's Table 1, as printed and as computed.
-  EXPECT_NE(read("papers/wa87-table-1-bounds.csv").find("\n8,0.092,0.09176,0.0228,0.022798,0.022801,0.186,0.18598"),
-            std::string::npos)
-      << read("papers/wa87-table-1-bounds.csv");
-  // One voxel about the universe's middle may be eight: the bound is reached, at 8 n - 7 internal nodes for n = 2.
-  const std::string measured = read("papers/wa87-table-1-measured.csv");
-  EXPECT_NE(measured.find("\n0,400,8,1278,1 %,9,9,100 %"), std::string::npos) << measured;
-  for (std::size_t at = measured.find(" %"); at != std::string::npos; at = measured.find(" %", at + 1)) {
-    const std::size_t begin = measured.rfind(',', at) + 1;
-    EXPECT_LE(std::stoi(measured.substr(begin, at - begin)), 100);
-  }
-  // Table 2: every number of object (a) that can be read.
-  const std::string table = read("papers/wa87-table-2a.csv");
-  for (const char* row :
-       {"\n4,96,source,12,12,7,7,–,–,–,0.073,0.073,as printed", "\n4,96,\"(0,1,0), -30°, (8,0,0)\",47,47,–,",
-        "\n6,6144,\"(0,1,0), -30°, (8,0,0)\",739,739,–,", "\n6,6144,\"(1,1,1), 30°, (2,2,0)\",2042,2042,673,673,676,",
-        "\n7,49152,\"(1,1,1), 30°, (2,2,0)\",–,", "2713,2713,2718,"})
-    EXPECT_NE(table.find(row), std::string::npos) << row << "\n" << table;
-  EXPECT_EQ(table.find("another object"), std::string::npos);
-  // Figure 4: four leaves become two of side 4 and sixteen of side 2.
-  const std::string moved = read("papers/an84-figure-4b.txt");
-  const auto black = [](const std::string& text) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find("black"); at != std::string::npos; at = text.find("black", at + 1)) ++count;
-    return count;
-  };
-  EXPECT_EQ(black(read("papers/an84-figure-4a.txt")), 4u);
-  EXPECT_EQ(black(moved), 18u);
-  // Once more, over what is there.
-  EXPECT_EQ(done({"reproduce", "-o", "papers"}).out, "papers: 10 files; open papers/index.html\n");
-  EXPECT_EQ(read("papers/index.html"), page);
-}
-
-TEST_F(PathCommands, ReproduceRefuses) {
-  write("file", "");
-  refused({"reproduce"}, "--output is required");
-  refused({"reproduce", "-o", ""}, "the folder's name is empty");
 }
 
 }  // namespace

@@ -17,11 +17,13 @@ namespace va88 = papers::va88;
 void expect_same_picture(const Octree& octree, const Eigen::Vector3d& direction) {
   SCOPED_TRACE(direction.transpose());
   const LineDrawing exact = draw(octree, View(direction));
-  const va88::Drawing printed = va88::draw(octree, direction);
-  std::vector<Stroke> strokes;
-  for (const va88::Segment& s : printed.segments) strokes.push_back({s.from, s.to});
-  EXPECT_NEAR(printed.length(), exact.length(), 1e-6 * exact.length());
-  EXPECT_EQ(reference::difference(strokes, exact.strokes, 1e-7), "");
+  for (const auto comparing : {va88::Comparing::every_edge, va88::Comparing::extents}) {
+    const va88::Drawing printed = va88::draw(octree, direction, comparing);
+    std::vector<Stroke> strokes;
+    for (const va88::Segment& s : printed.segments) strokes.push_back({s.from, s.to});
+    EXPECT_NEAR(printed.length(), exact.length(), 1e-6 * exact.length());
+    EXPECT_EQ(reference::difference(strokes, exact.strokes, 1e-7), "");
+  }
 }
 
 const std::vector<Eigen::Vector3d>& directions() {
