@@ -24,7 +24,7 @@ constexpr double kSide = 80;  // millimetres
 // The curve as seen from `view`, far links first, each on a white band that parts it from those behind it.
 std::string curve_svg(int order, const View& view) {
   const std::vector<curve::Voxel> nodes = nodes_of(order);
-  const double side = static_cast<double>((1 << order) - 1), unit = order == 0 ? 1 : 45 / side;
+  const double side = static_cast<double>((1 << order) - 1), unit = order == 0 ? 1 : 52 / side;
   const Eigen::Vector3d middle = Eigen::Vector3d::Constant(side / 2);
   const auto point = [](const curve::Voxel& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
   const auto seen = [&](const Eigen::Vector3d& p) {
@@ -42,7 +42,7 @@ std::string curve_svg(int order, const View& view) {
   const double width = order == 1 ? 0.9 : 0.7;
   for (const std::size_t i : links) {
     const Eigen::Vector2d from = seen(point(nodes[i])), to = seen(point(nodes[i + 1])), link = to - from;
-    canvas.line(from + 0.2 * link, to - 0.2 * link, "white", 4 * width);
+    canvas.line(from + 0.25 * link, to - 0.25 * link, "white", 2.6 * width);
     canvas.line(from, to, "black", width);
   }
   // The first node is empty, the last one full.
@@ -57,7 +57,7 @@ std::string curve_svg(int order, const View& view) {
 }  // namespace
 
 Exhibit mhf92_figure_1(const Work&) {
-  const View view({5, -13, 6});
+  const View view({2, -9, 3});
   Canvas canvas(3 * kSide, kSide + 8);
   std::string csv = "order,node,x,y,z\n";
   for (int order = 0; order <= 2; ++order) {

@@ -44,8 +44,13 @@ void put(Canvas& canvas, const Placed& node, WhiteLeaves white_leaves) {
     const Eigen::Vector2d link = child.at - node.at;
     canvas.line(node.at, node.at + (nil ? kStub : 1.0) * link, nil ? "gray" : "black");
     if (nil) continue;
-    const Eigen::Vector2d label = child.at + Eigen::Vector2d(link[0] > 0 ? kRadius : -kRadius, -1.6 * kRadius);
-    canvas.text(label, std::to_string(octant), 3, link[0] > 0 ? Canvas::Anchor::start : Canvas::Anchor::end);
+    const std::string label = std::to_string(octant);
+    if (child.children.empty())
+      canvas.text(child.at + Eigen::Vector2d(0, 3 * kRadius), label, 3, Canvas::Anchor::middle);
+    else if (link[0] > 0)
+      canvas.text(child.at + Eigen::Vector2d(1.6 * kRadius, 0.4), label, 3);
+    else
+      canvas.text(child.at + Eigen::Vector2d(-1.6 * kRadius, 0.4), label, 3, Canvas::Anchor::end);
   }
   for (const Placed& child : node.children) put(canvas, child, white_leaves);
   if (node.colour == Colour::white && white_leaves == WhiteLeaves::links) return;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -20,6 +21,7 @@ namespace {
 struct Words {
   const char *title, *paper, *ours;
   std::array<double, 3> view;
+  int depth = 7;  // of the drawn octree; what is round and has many edges is drawn from a smaller one
 };
 
 // By figure, from 5 on.
@@ -36,13 +38,15 @@ const std::array<Words, 7> kWords = {{
      "One of four &ldquo;simple geometric objects&rdquo;.",
      "A disc from above and a triangle from eight sides: &ldquo;the intersections performed over successive cylinders "
      "give only a polyhedral approximation to a smooth surface&rdquo;.",
-     {12, -16, 9}},
+     {12, -16, 9},
+     6},
     {"a sphere",
      "One of four &ldquo;simple geometric objects&rdquo;.",
      "A disc from 13 sides: the faces, edges and corners of a cube. Three of them alone would leave the intersection "
      "of "
      "three cylinders.",
-     {12, -16, 15}},
+     {12, -16, 15},
+     6},
     {"a pyramid",
      "One of four &ldquo;simple geometric objects&rdquo;.",
      "A triangle from the front and from the right, a square from above: the same object, with steps of a voxel.",
@@ -63,7 +67,7 @@ const std::array<Words, 7> kWords = {{
      "&ldquo;An object whose silhouette is a diamond when viewed from any face of the universe cube that contains "
      "it.&rdquo;",
      "A diamond from front, right and above: the largest such solid is a rhombic dodecahedron.",
-     {12, -16, 15}},
+     {4, -16, 10}},
 }};
 
 constexpr double kPageSide = 110, kImageSide = 34;  // millimetres
@@ -91,9 +95,10 @@ std::string direction(const Eigen::Vector3d& view) { return fmt::format("({}, {}
 
 Exhibit va88_figure(int figure, const Work& work) {
   const Words& words = kWords.at(static_cast<std::size_t>(figure - kVa88FirstFigure));
-  const Va88Object object = va88_object(figure);
-  constexpr int kDepth = 7;
-  const Octree octree = octree_from_silhouettes(object.silhouettes, kDepth, {}, {work.threads, {}});
+  Va88Object object = va88_object(figure);
+  const double pixel = std::exp2(words.depth) / object.silhouettes.front().width;
+  for (Silhouette& seen : object.silhouettes) seen.pixel_size = pixel;
+  const Octree octree = octree_from_silhouettes(object.silhouettes, words.depth, {}, {work.threads, {}});
   const LineDrawing drawing = draw(octree, View({words.view[0], words.view[1], words.view[2]}), {work.threads, {}});
   // Two programs, one answer: the paper's algorithm is the witness of ours.
   const papers::va88::Drawing paper =
@@ -126,23 +131,24 @@ Exhibit va88_figure(int figure, const Work& work) {
       images += image_svg(seen);
     }
     sides += (sides.empty() ? "" : ", ") + direction(seen.view);
-    views.push_back({{"image", at->second}, {"view", {seen.view[0], seen.view[1], seen.view[2]}}, {"pixel_size", 1}});
+    views.push_back(
+        {{"image", at->second}, {"view", {seen.view[0], seen.view[1], seen.view[2]}}, {"pixel_size", pixel}});
   }
   const std::string set_name = fmt::format("va88-{}.json", object.name);
   exhibit.files.push_back(
-      {set_name, nlohmann::ordered_json{{"depth", kDepth}, {"views", std::move(views)}}.dump(2) + "\n"});
+      {set_name, nlohmann::ordered_json{{"depth", words.depth}, {"views", std::move(views)}}.dump(2) + "\n"});
   exhibit.files.push_back({stem + ".svg", svg});
   exhibit.drawings = {{stem + ".png", drawing, page}};
 
   const Measures measures = measure(octree);
   exhibit.body =
       paragraph("<b>In the paper.</b> " + std::string(words.paper)) +
-      paragraph(fmt::format("<b>Here.</b> {} Silhouettes of 128 &times; 128 pixels, seen from {}; the octree has {} "
-                            "black leaves and {} internal nodes, the drawing, seen from {}, {} strokes of together "
-                            "{:.6g} voxels. The paper's own algorithm, run here, finds the same length.",
-                            words.ours, sides, measures.black_leaves, measures.internal_nodes,
-                            direction({words.view[0], words.view[1], words.view[2]}), drawing.strokes.size(),
-                            drawing.length())) +
+      paragraph(fmt::format(
+          "<b>Here.</b> {} Silhouettes of 128 &times; 128 pixels, seen from {}; the octree, of depth {}, has {} "
+          "black leaves and {} internal nodes, the drawing, seen from {}, {} strokes of together "
+          "{:.6g} voxels. The paper's own algorithm, run here, finds the same length.",
+          words.ours, sides, words.depth, measures.black_leaves, measures.internal_nodes,
+          direction({words.view[0], words.view[1], words.view[2]}), drawing.strokes.size(), drawing.length())) +
       "<figure>" + without_head(svg) + "<figcaption>" + images + "</figcaption></figure>\n" +
       paragraph(
           fmt::format("<code>blackleaf build {0} -o {1}.octree &amp;&amp; blackleaf draw {1}.octree --view {2},{3},{4} "

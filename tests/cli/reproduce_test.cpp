@@ -21,7 +21,7 @@ class ReproduceCommand : public CliTest {
   }
   // The octree of the silhouettes that the command has written for one of VA88's objects.
   Octree built(const std::string& name) const {
-    done({"build", "papers/va88-" + name + ".json", "-o", name + ".octree"});
+    done({"build", "papers/va88-" + name + ".json", "--depth", "7", "-o", name + ".octree"});
     return load(folder() / (name + ".octree")).octree;
   }
 
