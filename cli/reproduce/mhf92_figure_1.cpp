@@ -57,7 +57,7 @@ std::string curve_svg(int order, const View& view) {
 }  // namespace
 
 Exhibit mhf92_figure_1(const Work&) {
-  const View view({2, -9, 3});
+  const View view({3, -10, 6});
   Canvas canvas(3 * kSide, kSide + 8);
   std::string csv = "order,node,x,y,z\n";
   for (int order = 0; order <= 2; ++order) {
