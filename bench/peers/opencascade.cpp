@@ -104,8 +104,8 @@ const TopoDS_Shape& merged_ball(int radius) {
 
 HLRAlgo_Projector projector() {
   const Eigen::Vector3d& d = ball_direction();
-  const Eigen::Vector3d u = Eigen::Vector3d::UnitZ().cross(d);
-  return HLRAlgo_Projector(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(d[0], d[1], d[2]), gp_Dir(u[0], u[1], u[2])));
+  // To the right: z x d.
+  return HLRAlgo_Projector(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(d[0], d[1], d[2]), gp_Dir(-d[1], d[0], 0)));
 }
 
 double length_of(const TopoDS_Shape& lines) {

@@ -78,7 +78,7 @@ class ReproduceCommand : public CliTest {
       EXPECT_GT(static_cast<double>(measures.volume), volume - rounding) << name;
       EXPECT_LT(static_cast<double>(measures.volume), volume * most_more + rounding) << name;
       // ... and rounding evens out.
-      EXPECT_NEAR(static_cast<double>(measures.volume), volume * (1 + most_more) / 2, 0.025 * volume) << name;
+      EXPECT_NEAR(static_cast<double>(measures.volume), volume * (1 + most_more) / 2, 0.03 * volume) << name;
     };
     expect("cylinder", pi * 40 * 40 * 96, 1);
     // Eight views round it off to a polygon of sixteen sides.
@@ -160,8 +160,8 @@ TEST_F(ReproduceCommand, WritesThePapersTablesAndFigures) {
   EXPECT_EQ(read("papers/an84-figure-3.txt"), "r057\nr075\nr275\n");
   // Figure 2: a circle a node.
   const std::string tree = read("papers/an84-figure-2.svg");
-  EXPECT_EQ(count(tree, "<circle "), 1 + 8 + 3 * 8u);
-  EXPECT_EQ(count(tree, "fill=\"lightgray\""), 4u);
+  EXPECT_EQ(count(tree, "<circle "), 1 + 8 + 2 * 8u);
+  EXPECT_EQ(count(tree, "fill=\"lightgray\""), 3u);
 
   // Once more, over what is there: only what is measured differs.
   std::vector<std::string> once;
