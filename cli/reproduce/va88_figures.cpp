@@ -117,6 +117,7 @@ Exhibit va88_figure(int figure, const Work& work) {
   page.width_mm = page.height_mm = kPageSide;
   page.margin_mm = 2;
   page.pen_width_mm = 0.1;
+  page.dots_per_inch = 150;
   const std::string svg = to_svg(drawing, page);
 
   // Views that see the same share an image.
