@@ -1,10 +1,12 @@
-// query/N: the colour of one random voxel of the bunny's universe.
+// query/N: the colour of one random voxel of the bunny's universe. query-near/N: of one voxel after another along rays.
 // ray/N: the first hit of one random ray.
 #include "query_bench.h"
 
+#include <cmath>
 #include <map>
 #include <random>
 
+#include "blackleaf/voxel_cursor.h"
 #include "contenders.h"
 #include "inputs.h"
 
@@ -17,6 +19,22 @@ const std::vector<curve::Voxel>& random_voxels(int depth) {
     std::mt19937_64 random(1992);
     for (int i = 0; i < 1 << 20; ++i) voxels.push_back(curve::voxel(depth, random() >> (64 - 3 * depth)));
   }
+  return voxels;
+}
+
+const std::vector<curve::Voxel>& near_voxels(int depth) {
+  static std::map<int, std::vector<curve::Voxel>> made;
+  auto& voxels = made[depth];
+  if (voxels.empty())
+    for (std::size_t i = 0; voxels.size() < 1 << 20; ++i) {
+      const Ray& ray = random_rays(depth)[i % random_rays(depth).size()];
+      for (double t = 0; t < 2 << depth; ++t) {
+        const Eigen::Vector3d at = (ray.origin + t * ray.direction).array().floor();
+        if (at.minCoeff() >= 0 && at.maxCoeff() < 1 << depth)
+          voxels.push_back({static_cast<std::int32_t>(at.x()), static_cast<std::int32_t>(at.y()),
+                            static_cast<std::int32_t>(at.z())});
+      }
+    }
   return voxels;
 }
 
@@ -53,6 +71,11 @@ void add_query() {
       });
     });
   }
+  for (const int depth : {8, 9})
+    contender("query-near/" + side_name(depth), "ours", [=](benchmark::State& state) {
+      VoxelCursor cursor(bunny(depth));
+      count_near(state, depth, [&](const curve::Voxel& v) { return cursor.contains(v.x, v.y, v.z); });
+    });
   for (const int depth : {8, 9, 10})
     contender("ray/" + side_name(depth), "ours", [=](benchmark::State& state) {
       const Octree& octree = bunny(depth);

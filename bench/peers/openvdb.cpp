@@ -156,14 +156,19 @@ void add_openvdb() {
                 [=](benchmark::State& state) { resampled(state, depth, threads); })
           ->Iterations(1)
           ->Repetitions(kRepetitions);
-  for (const int depth : {8, 9})
+  for (const int depth : {8, 9}) {
+    const auto coord = [](const curve::Voxel& v) { return Coord(v.x, v.y, v.z); };
     contender("query/" + side_name(depth), "openvdb", [=](benchmark::State& state) {
       const MaskGrid::Ptr grid = bunny_grid(depth);
       const auto& tree = grid->tree();
-      count_black(state, depth, [&](const curve::Voxel& v) {
-        return tree.getValue(Coord(static_cast<int>(v.x), static_cast<int>(v.y), static_cast<int>(v.z)));
-      });
+      count_black(state, depth, [&](const curve::Voxel& v) { return tree.getValue(coord(v)); });
     });
+    contender("query-near/" + side_name(depth), "openvdb", [=](benchmark::State& state) {
+      const MaskGrid::Ptr grid = bunny_grid(depth);
+      const auto accessor = grid->getConstAccessor();
+      count_near(state, depth, [&](const curve::Voxel& v) { return accessor.getValue(coord(v)); });
+    });
+  }
   for (const int depth : {8, 9, 10}) {
     sized("memory/" + side_name(depth), "openvdb", [=] { return bunny_grid(depth)->memUsage(); });
     sized("file/" + side_name(depth), "openvdb", [=] { return file_bytes(depth); });

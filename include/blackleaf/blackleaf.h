@@ -43,6 +43,7 @@
 #include "blackleaf/silhouettes_file.h"
 #include "blackleaf/sweep.h"
 #include "blackleaf/volume_file.h"
+#include "blackleaf/voxel_cursor.h"
 #include "blackleaf/voxel_stream.h"
 #include "blackleaf/voxels.h"
 #include "blackleaf/work.h"
