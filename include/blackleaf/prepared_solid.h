@@ -14,7 +14,7 @@ namespace blackleaf {
 /// An immutable value; copies share what they hold and may be used from many threads.
 class PreparedSolid {
  public:
-  /// O(words). Pays from some tens of questions on. 88 bytes for every gray node of level 3 or more.
+  /// O(words); pays from some tens or hundreds of questions on. 88 bytes for every gray node of level 3 or more.
   explicit PreparedSolid(const Octree& octree);
 
   const Octree& octree() const;

@@ -156,10 +156,10 @@ inline ContactNode ContactNodes::child(const ContactNode& parent, const ChildBox
     child.normal[axis] = boxes.normal[axis][octant];
     child.reach -= child.normal[axis] * by;  // whole numbers below 2^16 times a power of two
   }
+  child.black = parent.black || parent.level == 1;
+  if (child.black) return child;
   const auto bit = std::uint64_t{1} << octant;
-  if (parent.black) {
-    child.black = true;
-  } else if (parent.level >= 3) {
+  if (parent.level >= 3) {
     child.black = (parent.word & bit) != 0;
     if (child.black) return child;
     const auto below = static_cast<std::size_t>(child.level);
@@ -167,13 +167,11 @@ inline ContactNode ContactNodes::child(const ContactNode& parent, const ChildBox
         (parent.word >> 16) + static_cast<unsigned>(std::popcount(parent.word >> 8 & (bit - 1) & 0xFF));
     child.word = words_[below][index];
     if (bounds_[below] != nullptr) child.bounds = &bounds_[below][index];
-  } else if (parent.level == 2) {
+  } else {
     child.word = parent.word >> (8 * octant) & 0xFF;
     child.black = child.word == 0xFF;
     child.place = kByteBoxes[child.word].place;
     child.half = kByteBoxes[child.word].half;
-  } else {
-    child.black = true;
   }
   return child;
 }
