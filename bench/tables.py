@@ -20,7 +20,7 @@ def shown(value, unit):
 
 def plainly(value):
     """Two digits, and no more precision than there is."""
-    return f"{value:.2g}" if value < 100 else f"{value:.0f}"
+    return f"{value:.2g}" if value < 99.5 else f"{value:.0f}"
 
 
 def beside(result, who):
