@@ -68,7 +68,7 @@ struct EyePosition {
            : right < left ? std::weak_ordering::greater
                           : std::weak_ordering::equivalent;
   }
-  friend bool operator==(const EyePosition& p, const EyePosition& q) { return p <=> q == 0; }
+  friend bool operator==(const EyePosition& p, const EyePosition& q) { return !(p < q) && !(q < p); }
 };
 
 /// A piece of an edge on its picture line.

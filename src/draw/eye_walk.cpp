@@ -195,6 +195,7 @@ bool EyeWalk::descend(int level, std::uint64_t word, std::int64_t along, const S
 // long as the plane cuts it. A place blocks iff both sides are black there.
 bool EyeWalk::descend_in_plane(const Node& below, const Node& above, std::int64_t plane, std::int64_t along,
                                const Slab& slab_c) {
+  assert(below.level() >= 1);
   const int level = below.level() - 1;
   const std::int64_t length = kUnit << level;
   const std::array<Slab, 2> c = halves(slab_c, length, rough_c_);
