@@ -55,16 +55,14 @@ struct Continuous::View {
   RigidMap b_from_a_at_begin, b_from_a_at_middle;
 };
 
-Continuous::Verdict Continuous::contact(const Pair& pair, double place, double distance) {
-  leaf_a_ = pair.a;
-  leaf_b_ = pair.b;
+Continuous::Verdict Continuous::contact(double place, double distance) {
   place_ = place;
   distance_ = distance;
   return Verdict::contact;
 }
 
-bool Continuous::lower(const Pair& pair, double place, double distance) {
-  contact(pair, place, distance);
+bool Continuous::lower(double place, double distance) {
+  contact(place, distance);
   above_ = distance;
   lowered_ = true;
   return above_ <= settings_.tolerance;
@@ -228,12 +226,12 @@ Continuous::Verdict Continuous::judge(const Pair& pair, const View& view) {
       // Not clear is known as soon as any time shows it. Axes that are left out, crossed edges nearly parallel, could
       // part the boxes by this more.
       const double left_out = 0x1p-19 * (ball_a + ball_b);
-      if (largest < std::min(0.0, clearance()) - slop_ - left_out) return contact(pair, view.middle, largest);
+      if (largest < std::min(0.0, clearance()) - slop_ - left_out) return contact(view.middle, largest);
     }
     if (clearance() <= 0 && !least()) return Verdict::wait;
     // With a clearance the shortest connection tells more than the axes.
     const NearestPoints points = nearest_points(node_a, node_b, view.b_from_a_at_middle);
-    if (least() && points.distance < above_ && lower(pair, view.middle, points.distance)) return Verdict::contact;
+    if (least() && points.distance < above_ && lower(view.middle, points.distance)) return Verdict::contact;
     if (points.distance == 0) return Verdict::wait;
     return proven((1 / points.distance) * vector(points.on_b - points.on_a)) ? Verdict::apart : Verdict::wait;
   }
@@ -246,10 +244,10 @@ Continuous::Verdict Continuous::judge(const Pair& pair, const View& view) {
 Continuous::Verdict Continuous::judge_at_begin(const Pair& pair, const View& view) {
   const BoxNode &node_a = a_.nodes[pair.a], &node_b = b_.nodes[pair.b];
   double distance = nearest_points(node_a, node_b, view.b_from_a_at_begin).distance;
-  if (least()) return distance < above_ && lower(pair, view.begin, distance) ? Verdict::contact : Verdict::apart;
+  if (least()) return distance < above_ && lower(view.begin, distance) ? Verdict::contact : Verdict::apart;
   if (distance <= slop_) distance = std::min(0.0, separation(node_a, node_b, view.b_from_a_at_begin));
   if (distance > clearance() + settings_.tolerance - 2 * slop_) return Verdict::apart;
-  return contact(pair, view.begin, distance);
+  return contact(view.begin, distance);
 }
 
 }  // namespace blackleaf::detail

@@ -56,10 +56,8 @@ class Continuous {
   bool search(const Stretch& stretch);
   /// Where in the stretch, from 0 to 1, after search() has said true.
   double place() const { return place_; }
-  /// The pair of leaves and what they are apart then (negative: deep in each other).
+  /// The distance of two leaves then (negative: how deep they are in each other); the least distance known.
   double distance() const { return least() ? above_ : distance_; }
-  std::uint32_t leaf_a() const { return leaf_a_; }
-  std::uint32_t leaf_b() const { return leaf_b_; }
 
  private:
   struct Pair {
@@ -77,9 +75,9 @@ class Continuous {
   bool interval(double begin, double end, const Moment& at_begin, const Moment& at_end, std::size_t first, int depth);
   Verdict judge(const Pair& pair, const View& view);
   Verdict judge_at_begin(const Pair& pair, const View& view);
-  Verdict contact(const Pair& pair, double place, double distance);
+  Verdict contact(double place, double distance);
   /// A lesser distance is known. True iff no lesser one matters.
-  bool lower(const Pair& pair, double place, double distance);
+  bool lower(double place, double distance);
 
   const BoxTree &a_, &b_;
   Settings settings_;
@@ -87,7 +85,6 @@ class Continuous {
   std::vector<Pair> pairs_, stack_;
   double slop_ = 0, above_ = 0, place_ = 0, distance_ = 0;
   bool lowered_ = false;
-  std::uint32_t leaf_a_ = 0, leaf_b_ = 0;
 };
 
 }  // namespace blackleaf::detail

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "blackleaf/error.h"
@@ -32,14 +33,20 @@ struct Scene {
   }
 };
 
+std::string in_words(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
 void check(const Scene& scene, double clearance, double tolerance, const std::string& name) {
   detail::require_same_depth(scene.a, scene.b);
   if (!std::isfinite(clearance)) throw Error(ErrorCode::bad_argument, "the clearance is not finite", "give voxels");
   const double least = scene.size() * 0x1p-38;
   if (!(tolerance >= least) || !std::isfinite(tolerance))
     throw Error(ErrorCode::bad_argument,
-                "a " + name + " of " + std::to_string(tolerance) + " voxels is too small for coordinates of this size",
-                "use " + std::to_string(std::max(least, 1e-6)) + " or more");
+                "a " + name + " of " + in_words(tolerance) + " voxels is too small for coordinates of this size",
+                "use " + in_words(std::max(least, 1e-6)) + " or more");
 }
 
 detail::RigidMap b_from_a(const Stretch& stretch, double s) {
@@ -52,7 +59,7 @@ detail::RigidMap b_from_a(const Stretch& stretch, double s) {
 std::optional<detail::NearestPoints> nearest_at(const Scene& scene, const Stretch& stretch, double s, double below,
                                                 double enough) {
   detail::NearestPair pair(detail::boxes(scene.a), detail::boxes(scene.b), b_from_a(stretch, s));
-  const auto closed = [](const detail::BoxNode&, const detail::BoxNode&) { return true; };
+  const auto closed = [](const detail::BoxNode&, const detail::BoxNode&, double distance) { return distance == 0; };
   if (!pair.find(below, enough, closed)) return std::nullopt;
   detail::NearestPoints points = pair.best();
   const detail::RigidMap a = stretch.a.at(s);
@@ -104,7 +111,11 @@ std::optional<FirstContact> find_first(const Scene& scene, const ContactOptions&
   contact.pose_a = scene.path_a == nullptr ? Pose{contact.time, Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()}
                                            : scene.path_a->pose_at(contact.time);
   contact.pose_b = scene.path_b->pose_at(contact.time);
-  const auto nearest = nearest_at(scene, stretch, hit->place, std::numeric_limits<double>::infinity(), 0);
+  // The leaves that were found bound the distance; others may be nearer yet.
+  const double known = std::max(hit->distance, 2 * Continuous::rounding(scene.size()));
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  auto nearest = nearest_at(scene, stretch, hit->place, std::nextafter(known, kInfinity), 0);
+  if (!nearest) nearest = nearest_at(scene, stretch, hit->place, kInfinity, 0);
   contact.distance = hit->distance < 0 ? hit->distance : nearest->distance;
   contact.on_a = nearest->on_a;
   contact.on_b = nearest->on_b;

@@ -18,7 +18,7 @@ std::optional<MovedDistance> nearest(const PreparedSolid& a, const PreparedSolid
   if (a.is_empty() || b.is_empty()) return std::nullopt;
   const detail::MovedBoxes moved(motion);
   detail::NearestPair pair(detail::boxes(a), detail::boxes(b), moved.map());
-  const auto closed = [&](const detail::BoxNode& p, const detail::BoxNode& q) { return moved.touch(p, q); };
+  const auto closed = [&](const detail::BoxNode& p, const detail::BoxNode& q, double) { return moved.touch(p, q); };
   if (!pair.find(below, enough, closed)) return std::nullopt;
   const detail::NearestPoints& best = pair.best();
   return MovedDistance{best.distance, best.on_a, best.on_b};

@@ -18,26 +18,59 @@ NearestPair::NearestPair(const BoxTree& a, const BoxTree& b, const RigidMap& map
   loss_ = slop_ + 0x1p-35 * size;
 }
 
-std::array<double, 2> NearestPair::lower(const BoxNode& a, const BoxNode& b) const {
-  std::array<double, 3> d, across;
-  double squared = 0, in_a = 0, in_b = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    d[i] = f_[i][0] * double{b.centre[0]} + f_[i][1] * double{b.centre[1]} + f_[i][2] * double{b.centre[2]} + g_[i] -
-           double{a.centre[i]};
-    const double reach =
-        size_[i][0] * double{b.half[0]} + size_[i][1] * double{b.half[1]} + size_[i][2] * double{b.half[2]};
-    const double gap = std::max(0.0, std::abs(d[i]) - double{a.half[i]} - reach);
-    in_a += gap * gap;
-    squared += d[i] * d[i];
+void NearestPair::bounds_of_a(const BoxNode* first, std::size_t count, const BoxNode& b, Bounds& bounds) const {
+  std::array<double, 3> centre = g_, half{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      centre[i] += f_[i][j] * double{b.centre[j]};
+      half[i] += size_[i][j] * double{b.half[j]};
+    }
+  for (std::size_t k = 0; k < count; ++k) {
+    const BoxNode& a = first[k];
+    std::array<double, 3> d;
+    double in_a = 0, in_b = 0, squared = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      d[i] = centre[i] - double{a.centre[i]};
+      const double gap = std::max(0.0, std::abs(d[i]) - double{a.half[i]} - half[i]);
+      in_a += gap * gap;
+      squared += d[i] * d[i];
+    }
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double across = f_[0][j] * d[0] + f_[1][j] * d[1] + f_[2][j] * d[2];
+      const double reach =
+          size_[0][j] * double{a.half[0]} + size_[1][j] * double{a.half[1]} + size_[2][j] * double{a.half[2]};
+      const double gap = std::max(0.0, std::abs(across) - double{b.half[j]} - reach);
+      in_b += gap * gap;
+    }
+    bounds[k] = {std::max(in_a, in_b), squared};
   }
+}
+
+void NearestPair::bounds_of_b(const BoxNode& a, const BoxNode* first, std::size_t count, Bounds& bounds) const {
+  std::array<double, 3> from, half{};
   for (std::size_t j = 0; j < 3; ++j) {
-    across[j] = f_[0][j] * d[0] + f_[1][j] * d[1] + f_[2][j] * d[2];
-    const double reach =
-        size_[0][j] * double{a.half[0]} + size_[1][j] * double{a.half[1]} + size_[2][j] * double{a.half[2]};
-    const double gap = std::max(0.0, std::abs(across[j]) - double{b.half[j]} - reach);
-    in_b += gap * gap;
+    from[j] = g_[j] - double{a.centre[j]};
+    for (std::size_t i = 0; i < 3; ++i) half[j] += size_[i][j] * double{a.half[i]};
   }
-  return {std::max(0.0, std::sqrt(std::max(in_a, in_b)) - loss_), squared};
+  for (std::size_t k = 0; k < count; ++k) {
+    const BoxNode& b = first[k];
+    std::array<double, 3> d;
+    double in_a = 0, in_b = 0, squared = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      d[i] = f_[i][0] * double{b.centre[0]} + f_[i][1] * double{b.centre[1]} + f_[i][2] * double{b.centre[2]} + from[i];
+      const double reach =
+          size_[i][0] * double{b.half[0]} + size_[i][1] * double{b.half[1]} + size_[i][2] * double{b.half[2]};
+      const double gap = std::max(0.0, std::abs(d[i]) - double{a.half[i]} - reach);
+      in_a += gap * gap;
+      squared += d[i] * d[i];
+    }
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double across = f_[0][j] * d[0] + f_[1][j] * d[1] + f_[2][j] * d[2];
+      const double gap = std::max(0.0, std::abs(across) - double{b.half[j]} - half[j]);
+      in_b += gap * gap;
+    }
+    bounds[k] = {std::max(in_a, in_b), squared};
+  }
 }
 
 }  // namespace blackleaf::detail
