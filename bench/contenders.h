@@ -54,6 +54,7 @@ void add_combine();
 void add_offset();
 void add_sweep();
 void add_interference();
+void add_distance();
 void add_query();
 void add_drawing();
 void add_curve();

@@ -98,6 +98,9 @@ def demands():
         yield (f"interfere/{larger}: growth", lambda f, s=smaller, l=larger: f.growth(f"interfere/{s}", f"interfere/{l}"),
                "at most", 1.6)
     yield "interfere-batch-speedup/256: two threads", lambda f: f.ours("interfere-batch-speedup/256"), "at least", 1.8
+    for end in ("", "_p95"):
+        yield f"distance/256: FCL octree-octree{end}", lambda f, e=end: f.times("distance/256", "fcl-octree" + e), "at least", 1
+        yield f"distance/256: in interference tests{end}", lambda f, e=end: 1 / f.times("distance/256", "interfere" + e), "at most", 20
     yield "query/512: in OpenVDB's getValue", lambda f: 1 / f.times("query/512", "openvdb"), "at most", 1.2
     yield "ray/1024: OctoMap castRay", lambda f: f.times("ray/1024", "octomap"), "at least", 10
     yield "draw/256/t1: us a unit feature edge", lambda f: f.an_edge("draw/256/t1") / 1e-6, "at most", 1

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   add_offset();
   add_sweep();
   add_interference();
+  add_distance();
   add_query();
   add_drawing();
   add_curve();

@@ -13,6 +13,7 @@
 #include "blackleaf/move.h"
 #include "blackleaf/resample.h"
 #include "blackleaf/set_operations.h"
+#include "collide_path.h"
 #include "commands.h"
 #include "files.h"
 #include "motion_options.h"
@@ -132,6 +133,7 @@ int run_collide(Session& session) {
   bool align = false, resample = false;
   std::optional<std::string> poses_name, output;
   MotionOptions motion_options;
+  CollidePath along;
   add_octree_input(session.app(), "A", first_name);
   add_octree_input(session.app(), "B", second_name, "octree file of the same depth");
   motion_options.add_to(session.app(), "B");
@@ -142,6 +144,7 @@ int run_collide(Session& session) {
   add_text(session.app(), "-o,--output", output, "OUT", "write the octree of what they share")
       ->excludes(exact_flag)
       ->excludes(poses);
+  along.add_to(session.app());
   CLI::Option* align_flag = session.app().add_flag(
       "--align", align, "place B by its frame, in the universe of A, doubled until it holds both");
   session.app()
@@ -159,11 +162,13 @@ int run_collide(Session& session) {
   if (poses_name == "-" && (first_name == "-" || second_name == "-"))
     throw Error(ErrorCode::bad_argument, "an octree and the poses are both - for standard input",
                 "name a file for one of them");
+  along.check(first_name, second_name, motion_options.given() || exact || poses_name || output);
   if (output) check_octree_output(session, *output);
   const std::pair<Octree, Octree> pair =
       read_both(session, first_name, first_label, second_name, second_label, align, resample);
   const Octree& a = pair.first;
   const Octree& b = pair.second;
+  if (along.given()) return along.answer(session, a, b) ? kNo : kDone;
   if (poses_name) {
     const std::vector<Motion> motions = read_poses(session, *poses_name, b);
     return ask_poses(session, a, b, motions, exact) ? kNo : kDone;

@@ -60,7 +60,10 @@ void CollidePath::add_to(CLI::App& app) {
              "with --path: what comes within F voxels of that may be called contact (default 0.001)");
 }
 
-void CollidePath::check(const std::string& a_name, const std::string& b_name) const {
+void CollidePath::check(const std::string& a_name, const std::string& b_name, bool something_else) const {
+  if (path_ && something_else)
+    throw Error(ErrorCode::bad_argument, "--path and another question or motion of B are both given",
+                "leave out --path, or --rotate, --translate, --about, --matrix, --exact, --poses and -o");
   if (!path_ && (clearance_ || tolerance_))
     throw Error(ErrorCode::bad_argument, "--clearance and --tolerance are of a path", "give one with --path");
   if (path_ == "-" && (a_name == "-" || b_name == "-"))

@@ -5,6 +5,7 @@
 #include <fcl/geometry/octree/octree.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 
 #include "contact_poses.h"
 #include "contenders.h"
@@ -41,6 +42,18 @@ Ask colliding(const Object& a, const Object& b) {
   };
 }
 
+// The distance of two trees; seconds of a single pose, for it takes a tenth of one.
+Ask apart(const Object& a, const Object& b) {
+  return [=](const Motion& motion) {
+    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+    moved.linear() = motion.rotation();
+    moved.translation() = motion.translation();
+    const fcl::DistanceRequest<double> request;
+    fcl::DistanceResult<double> result;
+    return fcl::distance<double>(a.get(), Eigen::Isometry3d::Identity(), b.get(), moved, request, result) > 0;
+  };
+}
+
 }  // namespace
 
 void add_fcl() {
@@ -50,6 +63,11 @@ void add_fcl() {
       const Object tree = tree_of(depth);
       return colliding(tree, tree);
     });
+    if (depth < 9)
+      add_timed_poses("distance/" + side_name(depth), "fcl-octree", depth, [=] {
+        const Object tree = tree_of(depth);
+        return apart(tree, tree);
+      });
     add_timed_poses(key, "fcl-octree-mesh", depth, [=] { return colliding(tree_of(depth), mesh_of(depth)); });
     add_timed_poses(key, "fcl-mesh", depth, [=] {
       const Object mesh = mesh_of(depth);

@@ -171,5 +171,42 @@ TEST_F(Collide, Refusals) {
   refused({"collide", "a.octree", "none.octree"}, "none.octree");
 }
 
+TEST_F(Collide, AlongAPath) {
+  const auto write = [&](const std::string& name, const std::string& text) { std::ofstream(folder() / name) << text; };
+  // B, 12 to 16 along x, goes to A, which ends at x = 8: 4 voxels in 4 of 10 seconds.
+  write("hit.json",
+        R"({"poses": [{"time": 0, "translation": [0, -8, -4]}, {"time": 10, "translation": [-10, -8, -4]}]})");
+  write("miss.json",
+        R"({"poses": [{"time": 0, "translation": [0, -8, -4]}, {"time": 10, "translation": [-3, -8, -4]}]})");
+  const Result hit = run({"collide", "a.octree", "b.octree", "--path", "hit.json", "--json"});
+  EXPECT_EQ(hit.code, 1);
+  const json contact = hit.json()["first_contact"];
+  EXPECT_EQ(hit.json()["clear"], false);
+  EXPECT_LE(contact["time"].get<double>(), 4);
+  EXPECT_GE(contact["time"].get<double>(), 4 - 0.0011);
+  EXPECT_LE(contact["distance"].get<double>(), 0.001);
+  EXPECT_NEAR(contact["place"][0].get<double>(), 8, 0.001);
+  EXPECT_NEAR(contact["pose"]["translation"][0].get<double>(), -4, 0.002);
+  EXPECT_EQ(contact["pose"]["rotation"], json::parse("[1.0,0.0,0.0,0.0]"));
+  EXPECT_NE(run({"collide", "a.octree", "b.octree", "--path", "hit.json"}).out.find("first contact at time "),
+            std::string::npos);
+  const Result clear = run({"collide", "a.octree", "b.octree", "--path", "miss.json", "--json"});
+  EXPECT_EQ(clear.code, 0);
+  EXPECT_EQ(clear.json()["clear"], true);
+  EXPECT_NEAR(clear.json()["clearance"]["at_least"].get<double>(), 1, 0.011);
+  EXPECT_NE(run({"collide", "a.octree", "b.octree", "--path", "miss.json"}).out.find("the way is clear: at least"),
+            std::string::npos);
+  EXPECT_EQ(run({"collide", "a.octree", "b.octree", "--path", "miss.json", "--clearance", "0.9"}).code, 0);
+  EXPECT_EQ(run({"collide", "a.octree", "b.octree", "--path", "miss.json", "--clearance", "1.1", "--quiet"}).code, 1);
+  EXPECT_EQ(run({"collide", "a.octree", "b.octree", "--path", "hit.json", "--clearance", "-6.5"}).code, 0);
+  refused({"collide", "a.octree", "b.octree", "--path", "hit.json", "--exact"}, "--path");
+  refused({"collide", "a.octree", "b.octree", "--path", "hit.json", "--translate", "1,0,0"}, "--path");
+  refused({"collide", "a.octree", "b.octree", "--clearance", "1"}, "--path");
+  refused({"collide", "a.octree", "b.octree", "--path", "hit.json", "--tolerance", "0"}, "--tolerance");
+  refused({"collide", "a.octree", "b.octree", "--path", "hit.json", "--tolerance", "1e-13"}, "too small");
+  refused({"collide", "a.octree", "b.octree", "--path", "none.json"}, "none.json");
+  refused({"collide", "-", "b.octree", "--path", "-"}, "standard input");
+}
+
 }  // namespace
 }  // namespace blackleaf::test
