@@ -219,6 +219,28 @@ Continuous::Verdict Continuous::judge(const Pair& pair, const View& view) {
     }
   }
 
+  // Planes: along the normal of one of the nodes.
+  if (node_a.has_plane() || node_b.has_plane()) {
+    const Vector normal_a = widened(node_a.normal), normal_b = widened(node_b.normal);
+    const auto reach_with_plane = [](const Vector& half, const Vector& n, const Vector& normal, double most) {
+      const double box = reach(half, n);
+      return normal[0] == 0 && normal[1] == 0 && normal[2] == 0 ? box : std::min(box, most + reach(half, n - normal));
+    };
+    // Seen from the nodes' own frames: the reach of a along n and of b against it.
+    const auto plane_gap = [&](const Place& place, const Vector& from_a_to_b, const Vector& n) {
+      const Vector of_a = view.a_rests ? n : back(place.a, n), of_b = -1.0 * back(place.b, n);
+      return dot(n, from_a_to_b) - reach_with_plane(half_a, of_a, normal_a, double{node_a.reach}) -
+             reach_with_plane(half_b, of_b, normal_b, double{node_b.reach});
+    };
+    // Normals are of length 1 up to 2^-22.
+    const double enough = need + (std::abs(need) + ball_a + ball_b) * 0x1p-20;
+    for (const bool of_a : {true, false}) {
+      if (!(of_a ? node_a : node_b).has_plane()) continue;
+      const Vector n = of_a ? normal_a : -1.0 * (view.b * normal_b);
+      if (plane_gap(view.at_begin, d0, n) > enough && plane_gap(view.at_end, d1, n) > enough) return Verdict::apart;
+    }
+  }
+
   const double way = std::sqrt(squared) + view.turn_a * ball_a + view.turn_b * ball_b + slack;
   if (node_a.is_leaf() && node_b.is_leaf()) {
     if (way <= settings_.tolerance - 8 * slop_) return judge_at_begin(pair, view);

@@ -73,4 +73,40 @@ void NearestPair::bounds_of_b(const BoxNode& a, const BoxNode* first, std::size_
   }
 }
 
+// A's points x and B's points y, from their centres xi and eta, fulfil m.xi <= r and w.eta <= t, w the normal of B as
+// it is placed. So m.(y - x) >= m.d - r - (largest -m.eta), and -m.eta = w.eta - (m + w).eta <= t + (largest -(m +
+// w).eta) over the box; likewise for -w. Where two surfaces face each other m + w is small.
+double NearestPair::plane_gap(const BoxNode& a, const BoxNode& b) const {
+  std::array<double, 3> d, m, w, in_b, sum;
+  const auto dot = [](const auto& p, const auto& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; };
+  const auto reach = [](const std::array<float, 3>& half, const std::array<double, 3>& n) {
+    return double{half[0]} * std::abs(n[0]) + double{half[1]} * std::abs(n[1]) + double{half[2]} * std::abs(n[2]);
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    d[i] = f_[i][0] * double{b.centre[0]} + f_[i][1] * double{b.centre[1]} + f_[i][2] * double{b.centre[2]} + g_[i] -
+           double{a.centre[i]};
+    m[i] = double{a.normal[i]};
+    w[i] = f_[i][0] * double{b.normal[0]} + f_[i][1] * double{b.normal[1]} + f_[i][2] * double{b.normal[2]};
+    sum[i] = m[i] + w[i];
+  }
+  const auto back = [&](const std::array<double, 3>& v) {
+    for (std::size_t j = 0; j < 3; ++j) in_b[j] = f_[0][j] * v[0] + f_[1][j] * v[1] + f_[2][j] * v[2];
+    return in_b;
+  };
+  double gap = 0;
+  const bool facing = a.has_plane() && b.has_plane();
+  if (a.has_plane()) {
+    double of_b = reach(b.half, back(m));
+    if (facing) of_b = std::min(of_b, double{b.reach} + reach(b.half, back(sum)));
+    gap = dot(m, d) - double{a.reach} - of_b;
+  }
+  if (b.has_plane()) {
+    double of_a = reach(a.half, w);
+    if (facing) of_a = std::min(of_a, double{a.reach} + reach(a.half, sum));
+    gap = std::max(gap, -dot(w, d) - double{b.reach} - of_a);
+  }
+  // Normals are of length 1 up to 2^-22.
+  return gap * (1 - 0x1p-21);
+}
+
 }  // namespace blackleaf::detail

@@ -50,6 +50,9 @@ class NearestPair {
   void bounds_of_a(const BoxNode* first, std::size_t count, const BoxNode& b, Bounds& bounds) const;
   void bounds_of_b(const BoxNode& a, const BoxNode* first, std::size_t count, Bounds& bounds) const;
 
+  /// A lower bound by the planes of the nodes, at most what they are apart along the normals; before `loss_`.
+  double plane_gap(const BoxNode& a, const BoxNode& b) const;
+
   /// No pair whose squared lower bound is as much is nearer than what is known.
   void know(double distance) {
     best_.distance = distance;
@@ -64,6 +67,7 @@ class NearestPair {
     if (found_ && best_.distance <= enough_) return;
     if (pair.key[0] >= hopeless_) return;
     const BoxNode &a = a_.nodes[pair.a], &b = b_.nodes[pair.b];
+    if ((a.has_plane() || b.has_plane()) && plane_gap(a, b) - loss_ >= best_.distance) return;
     if (a.is_leaf() && b.is_leaf()) {
       NearestPoints points = nearest_points(a, b, map_);
       if (points.distance < doubtful())

@@ -61,7 +61,7 @@ TEST(PreparedSolid, LeavesAreTheSolid) {
     }
     ASSERT_EQ(filled, grid);
   }
-  EXPECT_EQ(detail::BoxTree(box(6, {3, 5, 7}, {60, 6, 61})).nodes.size(), 1u);
+  EXPECT_EQ(detail::BoxTree(PreparedSolid(box(6, {3, 5, 7}, {60, 6, 61}))).nodes.size(), 1u);
   EXPECT_TRUE(PreparedSolid(Octree(4)).is_empty());
 }
 
