@@ -39,7 +39,7 @@ struct ContactOptions {
 struct FirstContact {
   double time = 0;
   Pose pose_a, pose_b;  // at that time
-  double distance = 0;  // then; negative: the depth of the overlap
+  double distance = 0;  // then; negative: how deep two boxes are in each other
   Eigen::Vector3d on_a = Eigen::Vector3d::Zero(), on_b = Eigen::Vector3d::Zero();  // nearest points then
 };
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "blackleaf/contact.h"
 #include "blackleaf/error.h"
 #include "blackleaf/move.h"
@@ -27,6 +29,7 @@ detail::BoxNode box_node(const std::array<float, 3>& centre, const std::array<fl
 
 TEST(PreparedSolid, LeavesAreTheSolid) {
   std::mt19937 random(3);
+  int planes = 0;
   for (int trial = 0; trial < 200; ++trial) {
     SCOPED_TRACE(trial);
     const DenseGrid grid = reference::random_solid(1 + trial % 5, random);
@@ -60,7 +63,26 @@ TEST(PreparedSolid, LeavesAreTheSolid) {
       }
     }
     ASSERT_EQ(filled, grid);
+    // No black voxel crosses a plane.
+    const std::function<void(std::uint32_t, const detail::BoxNode&)> below = [&](std::uint32_t index,
+                                                                                 const detail::BoxNode& above) {
+      const detail::BoxNode& node = nodes[index];
+      if (node.is_leaf()) {
+        double most = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+          most += double{above.normal[i]} * (double{node.centre[i]} - double{above.centre[i]}) +
+                  std::abs(double{above.normal[i]}) * double{node.half[i]};
+        ASSERT_LE(most, above.reach);
+      }
+      for (std::uint32_t k = 0; k < node.count(); ++k) below(node.first() + k, above);
+    };
+    for (std::uint32_t index = 0; index < nodes.size(); ++index) {
+      if (!nodes[index].has_plane()) continue;
+      ++planes;
+      below(index, nodes[index]);
+    }
   }
+  EXPECT_GT(planes, 1000);
   EXPECT_EQ(detail::BoxTree(PreparedSolid(box(6, {3, 5, 7}, {60, 6, 61}))).nodes.size(), 1u);
   EXPECT_TRUE(PreparedSolid(Octree(4)).is_empty());
 }
@@ -159,6 +181,38 @@ TEST(MovedDistance, AgreesWithAllPairsOfLeaves) {
   EXPECT_GT(apart, 300);
   EXPECT_GT(touching, 300);
   EXPECT_GT(nothing, 50);
+}
+
+// Balls and shells of some thousand voxels: what planes are good for.
+TEST(MovedDistance, SmoothSolidsAgreeWithAllPairsOfLeaves) {
+  std::mt19937 random(512);
+  std::uniform_real_distribution<double> real(-1, 1);
+  const auto ball = [](const std::array<int, 3>& centre, int radius, int hollow) {
+    return octree_from_classifier(5, [=](const Cube& c) {
+      if (c.level > 0) return Colour::gray;
+      const int x = 2 * c.x + 1 - centre[0], y = 2 * c.y + 1 - centre[1], z = 2 * c.z + 1 - centre[2];
+      const int squared = x * x + y * y + 2 * z * z;
+      return squared <= 4 * radius * radius && squared >= 4 * hollow * hollow ? Colour::black : Colour::white;
+    });
+  };
+  const Octree a = ball({32, 31, 32}, 11, 0), b = ball({31, 34, 32}, 9, 6);
+  const PreparedSolid p(a), q(b);
+  const auto cubes_a = reference::cubes(a), cubes_b = reference::cubes(b);
+  int apart = 0;
+  for (int trial = 0; trial < 16; ++trial) {
+    SCOPED_TRACE(trial);
+    const Eigen::Vector3d way = Eigen::Vector3d(real(random), real(random), real(random)).normalized();
+    const Motion motion = Motion::translation(way * (18 + 4 * real(random))) *
+                          Motion::rotation(Eigen::Vector3d(real(random), real(random), 1), 3 * real(random))
+                              .about(Eigen::Vector3d::Constant(16));
+    const auto expected = static_cast<double>(reference::distance(cubes_a, {}, cubes_b, reference::exact_map(motion)));
+    const auto found = distance(p, q, motion);
+    ASSERT_TRUE(found);
+    ASSERT_NEAR(found->voxels, expected, 1e-9);
+    apart += expected > 0;
+  }
+  EXPECT_GT(apart, 4);
+  EXPECT_LT(apart, 16);
 }
 
 TEST(MovedDistance, WithoutRoundingItIsTheDistanceOfOctrees) {

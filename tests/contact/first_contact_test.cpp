@@ -93,6 +93,49 @@ TEST(FirstContact, AgreesWithDenseSampling) {
   EXPECT_GT(missed, 80);
 }
 
+// Larger solids with smooth surfaces and thin shells, against distance(), which has its own twin.
+TEST(FirstContact, SmoothSolidsAgreeWithDistances) {
+  std::mt19937 random(64);
+  const auto real = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto ball = [](double radius, double hollow) {
+    return octree_from_classifier(6, [=](const Cube& c) {
+      if (c.level > 0) return Colour::gray;
+      const Vector3d x = Vector3d(c.x, c.y, c.z) + Vector3d::Constant(0.5 - 32);
+      const double r = Vector3d(x[0], x[1], 1.5 * x[2]).norm();
+      return r <= radius && r >= hollow ? Colour::black : Colour::white;
+    });
+  };
+  // Inside a shell, out of it through its wall, and past it.
+  const PreparedSolid shell(ball(30, 28)), small(ball(6, 0)), half(ball(14, 12));
+  int met = 0, missed = 0;
+  for (int trial = 0; trial < 120; ++trial) {
+    SCOPED_TRACE(trial);
+    const PreparedSolid &a = trial % 3 == 0 ? shell : half, &b = trial % 2 ? small : half;
+    const auto anywhere = [&](double most) -> Vector3d {
+      return Vector3d(real(-1, 1), real(-1, 1), real(-0.7, 0.7)) * most;
+    };
+    const double reach = trial % 3 == 0 ? 25 : 40;
+    const Vector3d from = trial % 3 == 0 ? anywhere(8) : Vector3d(anywhere(1).normalized() * 33);
+    const Path path({{0, from, turn({real(-1, 1), real(-1, 1), 1}, real(-3, 3))},
+                     {1, from + anywhere(reach), turn({real(-1, 1), real(-1, 1), 1}, real(-3, 3))}},
+                    Vector3d::Constant(32) + anywhere(4));
+    const ContactOptions options{trial % 5 == 0 ? real(0, 2) : 0, 1e-4};
+    const auto contact = first_contact(a, b, path, options);
+    ASSERT_EQ(clear(a, b, path, options), !contact);
+    const double end = contact ? contact->time : 1;
+    for (int i = 0; i < 40; ++i) {
+      ASSERT_TRUE(farther_than(options.clearance, a, b, path.motion_at(end * i / 40)) || contact->time == 0);
+    }
+    if (contact) {
+      ASSERT_NEAR(distance(a, b, path.motion_at(end))->voxels, std::max(0.0, contact->distance), 1e-8);
+      ASSERT_LE(contact->distance, options.clearance + options.tolerance);
+    }
+    (contact ? met : missed)++;
+  }
+  EXPECT_GT(met, 30);
+  EXPECT_GT(missed, 20);
+}
+
 TEST(FirstContact, StraightAheadIsWhereItMustBe) {
   const PreparedSolid wall(box(7, {100, 0, 0}, {101, 128, 128})), ball(box(7, {10, 60, 60}, {12, 62, 62}));
   const auto contact = first_contact(wall, ball, straight({110, 0, 0}, 11));
