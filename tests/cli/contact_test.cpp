@@ -172,7 +172,6 @@ TEST_F(Collide, Refusals) {
 }
 
 TEST_F(Collide, AlongAPath) {
-  const auto write = [&](const std::string& name, const std::string& text) { std::ofstream(folder() / name) << text; };
   // B, 12 to 16 along x, goes to A, which ends at x = 8: 4 voxels in 4 of 10 seconds.
   write("hit.json",
         R"({"poses": [{"time": 0, "translation": [0, -8, -4]}, {"time": 10, "translation": [-10, -8, -4]}]})");
