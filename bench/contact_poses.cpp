@@ -14,7 +14,6 @@ namespace blackleaf::bench {
 namespace {
 
 constexpr int kPoses = 200;
-constexpr int kRounds = 7;
 
 Eigen::Vector3d random_direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
@@ -22,20 +21,21 @@ Eigen::Vector3d random_direction(std::mt19937& random) {
 }
 
 // By pose, in order of size.
-std::vector<double> seconds_of(int depth, const Ask& ask) {
+std::vector<double> seconds_of(int depth, const Ask& ask, int rounds) {
   using Clock = std::chrono::steady_clock;
   const auto& poses = contact_poses(depth);
-  std::vector<std::vector<double>> rounds(poses.size());
-  for (int round = 0; round < kRounds; ++round)
+  std::vector<std::vector<double>> of_poses(poses.size());
+  for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const auto start = Clock::now();
       benchmark::DoNotOptimize(ask(poses[i]));
-      rounds[i].push_back(std::chrono::duration<double>(Clock::now() - start).count());
+      of_poses[i].push_back(std::chrono::duration<double>(Clock::now() - start).count());
     }
   std::vector<double> seconds;
-  for (auto& of_pose : rounds) {
-    std::nth_element(of_pose.begin(), of_pose.begin() + kRounds / 2, of_pose.end());
-    seconds.push_back(of_pose[kRounds / 2]);
+  for (auto& of_pose : of_poses) {
+    const auto middle = of_pose.begin() + rounds / 2;
+    std::nth_element(of_pose.begin(), middle, of_pose.end());
+    seconds.push_back(*middle);
   }
   std::sort(seconds.begin(), seconds.end());
   return seconds;
@@ -66,12 +66,13 @@ const std::vector<Motion>& contact_poses(int depth) {
   return poses;
 }
 
-void add_timed_poses(const std::string& key, const std::string& who, int depth, const std::function<Ask()>& prepare) {
+void add_timed_poses(const std::string& key, const std::string& who, int depth, const std::function<Ask()>& prepare,
+                     int rounds) {
   for (const double part : {0.5, 0.95})
     contender(key, who + (part == 0.5 ? "" : "_p95"), [=](benchmark::State& state) {
       const Ask ask = prepare();
       for (auto _ : state) {
-        const std::vector<double> seconds = seconds_of(depth, ask);
+        const std::vector<double> seconds = seconds_of(depth, ask, rounds);
         state.counters["s"] = seconds[static_cast<std::size_t>(part * static_cast<double>(seconds.size()))];
       }
     })->Iterations(1);

@@ -17,7 +17,8 @@ const std::vector<Motion>& contact_poses(int depth);
 using Ask = std::function<bool(const Motion&)>;
 
 /// Adds the contenders `who` and `who`_p95: the median and the 95th percentile, over the poses, of the seconds that one
-/// answer takes; that of a pose is the median of several rounds. `prepare` makes what is asked, which is not timed.
-void add_timed_poses(const std::string& key, const std::string& who, int depth, const std::function<Ask()>& prepare);
+/// answer takes; that of a pose is the median of `rounds` rounds. `prepare` makes what is asked, which is not timed.
+void add_timed_poses(const std::string& key, const std::string& who, int depth, const std::function<Ask()>& prepare,
+                     int rounds = 7);
 
 }  // namespace blackleaf::bench

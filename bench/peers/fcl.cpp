@@ -42,7 +42,6 @@ Ask colliding(const Object& a, const Object& b) {
   };
 }
 
-// The distance of two trees; seconds of a single pose, for it takes a tenth of one.
 Ask apart(const Object& a, const Object& b) {
   return [=](const Motion& motion) {
     Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
@@ -63,11 +62,15 @@ void add_fcl() {
       const Object tree = tree_of(depth);
       return colliding(tree, tree);
     });
+    // A tenth of a second a pose: once is enough.
     if (depth < 9)
-      add_timed_poses("distance/" + side_name(depth), "fcl-octree", depth, [=] {
-        const Object tree = tree_of(depth);
-        return apart(tree, tree);
-      });
+      add_timed_poses(
+          "distance/" + side_name(depth), "fcl-octree", depth,
+          [=] {
+            const Object tree = tree_of(depth);
+            return apart(tree, tree);
+          },
+          1);
     add_timed_poses(key, "fcl-octree-mesh", depth, [=] { return colliding(tree_of(depth), mesh_of(depth)); });
     add_timed_poses(key, "fcl-mesh", depth, [=] {
       const Object mesh = mesh_of(depth);
