@@ -1,4 +1,4 @@
-// blackleaf draw: exact hidden-line drawings of octrees (VA88).
+// blackleaf draw: exact hidden-line drawings of octrees (VA88), of one or several in a picture.
 #include <fmt/format.h>
 
 #include "blackleaf/drawing.h"
@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "draw_page.h"
 #include "draw_pens.h"
+#include "draw_scene.h"
 #include "draw_sheet.h"
 #include "file/atomic_write.h"
 #include "files.h"
@@ -25,15 +26,69 @@ struct Result {
   std::optional<OrderedPicture> page;
 };
 
-// What is seen from one side, in voxels.
-std::vector<Layer> layers_of(const Octree& octree, const View& view, const PenArguments& pens, Result& result,
-                             const Work& work) {
-  const LineDrawing drawing = draw(octree, view, work);
-  result.strokes += drawing.strokes.size();
-  result.length += drawing.length();
-  std::vector<Layer> layers;
-  layers.push_back({"visible", pens.pen(), polylines(drawing.strokes)});
-  return layers;
+// What is seen from one side.
+struct Seen {
+  Scene scene;  // cut open
+  bool cut = false;
+  std::vector<SceneLines> lines;
+};
+
+Seen seen_from(const NamedScene& named, const SceneArguments& scene, const PenArguments& pens, const View& view,
+               const Work& work) {
+  bool all = true;
+  Seen seen{scene.seen_from(named.scene, view, all, {work.threads, {}}), scene.cut() && all, {}};
+  seen.lines = draw(seen.scene, view, pens.lines(), work);
+  return seen;
+}
+
+// Adds the hatching of a picture whose scale is known by now.
+void add_hatching(Seen& seen, const PenArguments& pens, const View& view, std::optional<double> mm_per_voxel,
+                  const Work& work) {
+  if (!pens.lines().visible) return;
+  for (SceneLines& lines : hatch(seen.scene, view, pens.hatching(mm_per_voxel, seen.cut), work))
+    seen.lines.push_back(std::move(lines));
+}
+
+std::vector<Layer> layers_of(const NamedScene& named, const PenArguments& pens, Seen seen, Result& result) {
+  for (const SceneLines& lines : seen.lines) {
+    result.strokes += lines.strokes.size();
+    for (const Stroke& stroke : lines.strokes) result.length += (stroke.to - stroke.from).norm();
+  }
+  return pens.layers(named, std::move(seen.lines));
+}
+
+Picture page_of(const NamedScene& named, const SceneArguments& scene, const PenArguments& pens,
+                const PageArguments& page, Result& result, const Work& work) {
+  const View& view = *result.view;
+  Seen seen = seen_from(named, scene, pens, view, work);
+  const bool hatched = pens.hatch() || seen.cut;
+  std::vector<Layer> layers = pens.layers(named, seen.lines);
+  const PageOptions options = page.page_for(layers);
+  // Hatching stays within the other lines, so the scale does not depend on it.
+  if (hatched) add_hatching(seen, pens, view, lay_out(std::move(layers), view, options).views[0].mm_per_voxel, work);
+  return lay_out(layers_of(named, pens, std::move(seen), result), view, options);
+}
+
+Picture sheet_of(const NamedScene& named, const SceneArguments& scene, const PenArguments& pens,
+                 const SheetOptions& options, Result& result, const Work& work) {
+  const std::array<View, 4> directions = sheet_views(options.angle);
+  std::vector<Seen> seen;
+  std::array<std::vector<Layer>, 4> views;
+  bool cut = false;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    seen.push_back(seen_from(named, scene, pens, directions[i], work));
+    cut = cut || seen[i].cut;
+    views[i] = pens.layers(named, seen[i].lines);
+  }
+  if (scene.cut() && !cut)
+    throw Error(ErrorCode::bad_argument, "--cut takes planes that are seen edge-on in every view of the sheet",
+                "give one --cut for each plane");
+  if (pens.hatch() || cut) {
+    const double mm_per_voxel = engineering_sheet(views, options).views[0].mm_per_voxel;
+    for (std::size_t i = 0; i < views.size(); ++i) add_hatching(seen[i], pens, directions[i], mm_per_voxel, work);
+  }
+  for (std::size_t i = 0; i < views.size(); ++i) views[i] = layers_of(named, pens, std::move(seen[i]), result);
+  return engineering_sheet(views, options);
 }
 
 void report(const Session& session, const std::string& output, const Result& result, bool stats) {
@@ -56,34 +111,36 @@ void report(const Session& session, const std::string& output, const Result& res
 }  // namespace
 
 int run_draw(Session& session) {
-  Label label;
-  std::string input, output;
+  std::string output;
   std::optional<std::string> view_text;
+  SceneArguments scene;
   PageArguments page;
   PenArguments pens;
   SheetArguments sheet;
-  add_octree_input(session.app(), "FILE", input);
+  scene.add_to(session.app());
   add_text(session.app(), "--view", view_text, "x,y,z",
            "direction toward the viewer, rounded to 2^-20 of its largest component; +z is up in the picture");
   add_output(session.app(), output, "picture: .svg .pdf .png .hpgl .dxf .json; - prints svg, hpgl, dxf or json");
   page.add_to(session.app());
   pens.add_to(session.app());
   sheet.add_to(session.app());
-  add_label(session.app(), label);
   session.add_json();
   session.set_example("blackleaf draw bunny.octree --view 3,-4,2 -o bunny.svg");
   if (!session.parse()) return kDone;
 
   const PictureFormat format = page.format(output);
   const bool in_voxels = format == PictureFormat::json && !sheet.given();
-  page.check(in_voxels, pens.given());
-  pens.check();
+  scene.check();
+  pens.check(in_voxels, scene.cut());
+  // JSON of one kind of lines has strokes only, and no layers that could have pens.
+  page.check(in_voxels, pens.given() && pens.plain() && scene.file_count() == 1);
   sheet.check(page.size());
   Result result;
   if (!sheet.given()) {
     if (!view_text)
       throw Error(ErrorCode::bad_argument, "--view is required", "give one like --view 3,-4,2, or --sheet");
     result.view = parse_view(*view_text);
+    scene.require_faced(*result.view);
   } else if (view_text) {
     throw Error(ErrorCode::bad_argument, "--sheet has views of its own", "leave out --view");
   }
@@ -91,18 +148,20 @@ int run_draw(Session& session) {
     throw Error(ErrorCode::bad_argument, "-o - and --json both want standard output", "write the picture to a file");
   if (output != "-") check_output(output);
 
-  const Octree octree = read_solid(session, input, label);
-  const std::string source = base_name(input);
+  const NamedScene named = scene.read(session);
+  pens.check(named);
+  const std::string source = scene.source();
   Picture picture = session.stage("draw", [&](const Work& work) {
-    if (!sheet.given()) {
-      result.layers = layers_of(octree, *result.view, pens, result, work);
-      return in_voxels ? Picture{} : lay_out(result.layers, *result.view, page.page_for(result.layers));
+    if (sheet.given()) {
+      const SheetOptions options =
+          sheet.options(page.size(), page.title().value_or(source), source, named.scene.all().frame());
+      return sheet_of(named, scene, pens, options, result, work);
     }
-    const SheetOptions options = sheet.options(page.size(), page.title().value_or(source), source, octree.frame());
-    std::array<std::vector<Layer>, 4> views;
-    const std::array<View, 4> directions = sheet_views(options.angle);
-    for (std::size_t i = 0; i < views.size(); ++i) views[i] = layers_of(octree, directions[i], pens, result, work);
-    return engineering_sheet(views, options);
+    if (!in_voxels) return page_of(named, scene, pens, page, result, work);
+    Seen seen = seen_from(named, scene, pens, *result.view, work);
+    if (pens.hatch() || seen.cut) add_hatching(seen, pens, *result.view, std::nullopt, work);
+    result.layers = layers_of(named, pens, std::move(seen), result);
+    return Picture{};
   });
   if (result.strokes == 0) session.warn("nothing is seen: the picture is empty");
   if (!in_voxels) {
@@ -116,7 +175,8 @@ int run_draw(Session& session) {
     if (!in_voxels) {
       text = text_of(result.page->picture, format);
     } else {
-      text = to_json(result.layers[0].lines, *result.view);
+      const bool plain = named.solids.size() == 1 && pens.plain() && !scene.cut();
+      text = plain ? to_json(result.layers[0].lines, *result.view) : to_json(result.layers, *result.view);
     }
     if (output != "-") return detail::write_atomically(output, text);
     check_interrupt();

@@ -6,6 +6,7 @@
 #include "blackleaf/scene.h"
 #include "directions.h"
 #include "reference/dense_scene.h"
+#include "scenes.h"
 
 namespace blackleaf {
 namespace {
@@ -13,59 +14,11 @@ namespace {
 using reference::DenseGrid;
 using reference::DenseScene;
 
-Scene scene_of(const std::vector<DenseGrid>& grids) {
-  std::vector<Octree> solids;
-  for (const DenseGrid& grid : grids) solids.push_back(reference::octree(grid));
-  return Scene(std::move(solids));
-}
-
 void expect_like_twin(const std::vector<DenseGrid>& grids, const Eigen::Vector3d& direction,
                       const SceneOptions& options) {
   SCOPED_TRACE("view " + show(direction) + " gap " + std::to_string(options.outline_gap));
   const View view(direction);
-  const DenseScene::Layers expected = DenseScene::lines(grids, view.direction(), options);
-  DenseScene::Layers found;
-  std::pair<LineKind, std::size_t> last{};
-  for (SceneLines& lines : draw(scene_of(grids), view, options)) {
-    const std::pair pen{lines.kind, lines.solid};
-    EXPECT_TRUE(found.empty() || last < pen);
-    last = pen;
-    found[pen] = std::move(lines.strokes);
-  }
-  for (const auto& [pen, strokes] : expected) {
-    SCOPED_TRACE("kind " + std::to_string(int(pen.first)) + " of solid " + std::to_string(pen.second));
-    EXPECT_EQ(reference::difference(found[pen], strokes, 1e-9), "");
-    found.erase(pen);
-  }
-  for (const auto& [pen, strokes] : found)
-    if (!strokes.empty()) ADD_FAILURE() << "kind " << int(pen.first) << " of solid " << pen.second << " has strokes";
-}
-
-// Solids that overlap, touch, or share the universe as labels do.
-std::vector<DenseGrid> random_scene(int depth, std::mt19937& random) {
-  const auto pick = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
-  std::vector<DenseGrid> grids;
-  for (int i = pick(1, 4); i > 0; --i) grids.push_back(reference::random_solid(depth, random));
-  switch (pick(0, 3)) {
-    case 0:  // labels: every voxel belongs to the first that has it
-      for (std::size_t i = 0; i < grids[0].voxels.size(); ++i) {
-        bool taken = false;
-        for (DenseGrid& grid : grids) {
-          grid.voxels[i] = grid.voxels[i] && !taken;
-          taken = taken || grid.voxels[i];
-        }
-      }
-      break;
-    case 1:  // all voxels of one of several colours
-      for (std::size_t i = 0; i < grids[0].voxels.size(); ++i) {
-        const auto owner = static_cast<std::size_t>(pick(0, int(grids.size()) - 1));
-        for (std::size_t k = 0; k < grids.size(); ++k) grids[k].voxels[i] = grids[0].voxels[i] && k == owner;
-      }
-      break;
-    default:
-      break;
-  }
-  return grids;
+  expect_same_layers(draw(scene_of(grids), view, options), DenseScene::lines(grids, view.direction(), options));
 }
 
 SceneOptions random_options(std::mt19937& random) {
