@@ -35,16 +35,17 @@ struct Seen {
 
 Seen seen_from(const NamedScene& named, const SceneArguments& scene, const PenArguments& pens, const View& view,
                const Work& work) {
-  bool all = true;
-  Seen seen{scene.seen_from(named.scene, view, all, {work.threads, {}}), scene.cut() && all, {}};
-  seen.lines = draw(seen.scene, view, pens.lines(), work);
+  bool cut = false;
+  Scene opened = scene.seen_from(named.scene, view, cut, {work.threads, {}});
+  Seen seen{std::move(opened), cut, {}};
+  seen.lines = draw(seen.scene, view, pens.lines(seen.scene.all().side()), work);
   return seen;
 }
 
 // Adds the hatching of a picture whose scale is known by now.
 void add_hatching(Seen& seen, const PenArguments& pens, const View& view, std::optional<double> mm_per_voxel,
                   const Work& work) {
-  if (!pens.lines().visible) return;
+  if (!pens.lines(1).visible) return;
   for (SceneLines& lines : hatch(seen.scene, view, pens.hatching(mm_per_voxel, seen.cut), work))
     seen.lines.push_back(std::move(lines));
 }
@@ -80,9 +81,6 @@ Picture sheet_of(const NamedScene& named, const SceneArguments& scene, const Pen
     cut = cut || seen[i].cut;
     views[i] = pens.layers(named, seen[i].lines);
   }
-  if (scene.cut() && !cut)
-    throw Error(ErrorCode::bad_argument, "--cut takes planes that are seen edge-on in every view of the sheet",
-                "give one --cut for each plane");
   if (pens.hatch() || cut) {
     const double mm_per_voxel = engineering_sheet(views, options).views[0].mm_per_voxel;
     for (std::size_t i = 0; i < views.size(); ++i) add_hatching(seen[i], pens, directions[i], mm_per_voxel, work);

@@ -80,6 +80,7 @@ Spacing parse_spacing(const std::string& text) {
 
 constexpr double kHatchMm = 1, kHatchVoxels = 4;  // unless told otherwise
 constexpr double kCutHatch = 0.7;                 // cut faces are hatched so much closer
+constexpr double kOutlineGap = 1.0 / 32;          // of the universe's side
 constexpr double kThin = 0.6;                     // hidden lines and hatching beside visible lines
 
 }  // namespace
@@ -96,14 +97,14 @@ void PenArguments::add_to(CLI::App& app) {
   add_number(app, "--outline-width", outline_width_, true,
              "outlines, which have nothing close behind them, in this width in mm");
   add_number(app, "--outline-gap", outline_gap_, true,
-             "of --outline-width: what is less than so many voxels behind is close (default: all but the background)");
+             "of --outline-width: what is less than so many voxels behind is close (default: 1/32 of the universe)");
   app.add_flag("--hatch", hatch_, "hatch faces by the direction in which they look");
   add_text(app, "--hatch-spacing", hatch_spacing_, "N[mm|voxels]",
            "between hatch lines (default 1mm, without a page 4voxels); cut faces have 0.7 of it");
 }
 
 void PenArguments::check(bool in_voxels, bool cut) const {
-  const SceneOptions options = lines();
+  const SceneOptions options = lines(1);
   for (const std::string& text : pens_) static_cast<void>(parse_pen(text, 1));
   if (outline_gap_ && !outline_width_)
     throw Error(ErrorCode::bad_argument, "--outline-gap belongs to --outline-width", "add it or leave this out");
@@ -139,10 +140,10 @@ void PenArguments::check(const NamedScene& scene) const {
         "give one for each at most");
 }
 
-SceneOptions PenArguments::lines() const {
+SceneOptions PenArguments::lines(std::int32_t side) const {
   SceneOptions options;
   options.outline = outline_width_.has_value();
-  if (outline_gap_) options.outline_gap = *outline_gap_;
+  options.outline_gap = outline_gap_.value_or(std::max(1.0, kOutlineGap * side));
   if (!hidden_ || *hidden_ == "none") return options;
   if (*hidden_ != "dashed" && *hidden_ != "only")
     throw Error(ErrorCode::bad_argument, fmt::format("--hidden is '{}', which is unknown", *hidden_),

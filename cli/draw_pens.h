@@ -26,7 +26,8 @@ class PenArguments {
   /// Whether all lines are of one kind.
   bool plain() const { return !outline_width_ && !hatch_ && (!hidden_ || *hidden_ == "none"); }
   bool hatch() const { return hatch_; }
-  SceneOptions lines() const;
+  /// `side`: of the universe.
+  SceneOptions lines(std::int32_t side) const;
   /// Distances of hatch lines at a scale; without one, as pictures without a page have it, voxels.
   HatchOptions hatching(std::optional<double> mm_per_voxel, bool cut) const;
 

@@ -178,10 +178,9 @@ NamedScene SceneArguments::read(Session& session) const {
   return {std::move(scene), std::move(solids)};
 }
 
-Scene SceneArguments::seen_from(const Scene& scene, const View& view, bool& all, const Work& work) const {
+Scene SceneArguments::seen_from(const Scene& scene, const View& view, bool& cut, const Work& work) const {
   const std::int32_t side = scene.all().side();
   std::vector<Box> removed;
-  all = true;
   for (const std::string& text : cuts_) {
     const Planes planes = parse_cut(text);
     Box box{{0, 0, 0}, {side, side, side}};
@@ -192,11 +191,9 @@ Scene SceneArguments::seen_from(const Scene& scene, const View& view, bool& all,
       const std::int32_t at = std::min(*planes[axis], side);
       (view.direction()[axis] > 0 ? box.min : box.max)[axis] = at;
     }
-    if (edge_on)
-      all = false;
-    else
-      removed.push_back(box);
+    if (!edge_on) removed.push_back(box);
   }
+  cut = !removed.empty();
   return removed.empty() ? scene : scene.without(removed, work);
 }
 

@@ -41,9 +41,9 @@ class SceneArguments {
   /// Loads everything, as stages "read", "align" and "move". Throws Error(bad_argument) that names both files when
   /// universes or frames differ.
   NamedScene read(Session& session) const;
-  /// The scene without what stands before the cuts, seen from `view`. A cut that is seen edge-on is left out; `all`
-  /// says whether none was. O(words).
-  Scene seen_from(const Scene& scene, const View& view, bool& all, const Work& work) const;
+  /// The scene without what stands before the cuts, seen from `view`. A cut that is seen edge-on is left out; `cut`
+  /// says whether any other was made. O(words).
+  Scene seen_from(const Scene& scene, const View& view, bool& cut, const Work& work) const;
 
  private:
   using Planes = std::array<std::optional<std::int32_t>, 3>;

@@ -36,10 +36,10 @@ class Scene {
   /// The union: what hides.
   const Octree& all() const;
 
-  /// The scene without the voxels of some boxes, cut open: where a box has taken a part of a solid away, the new faces
-  /// of that solid are cut faces and can be hatched (hatch.h). A face that was there before, for instance between a
-  /// solid that is left and another one that is taken away whole, is no cut face. Solids keep their places in the list,
-  /// also when nothing is left of them. O(words of all and of the cut faces).
+  /// The scene without the voxels of some boxes, cut open: a face between a voxel that is left and one that was taken
+  /// away, both of which were in the union, is a cut face and can be hatched (hatch.h). Other faces were surface before,
+  /// also where they end at a box. Solids keep their places in the list, also when nothing is left of them. O(words of
+  /// all and of the cut faces).
   Scene without(std::span<const Box> removed, const Work& work = {}) const;
 
   /// The voxels of one solid whose face towards lower (`upward` false) or higher coordinates along an axis (0..2) is a

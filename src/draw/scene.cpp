@@ -44,26 +44,24 @@ Scene Scene::without(std::span<const Box> removed, const Work& work) const {
   for (const Box& b : removed) boxes.push_back(box(depth, b.min, b.max));
   if (boxes.empty()) return *this;
   const Octree gone = unite(boxes, {work.threads, {}});
-  // The voxels that touch what is gone, by the side on which they do: only there can cut faces be.
-  std::array<Octree, 6> beside{before.nothing, before.nothing, before.nothing,
-                               before.nothing, before.nothing, before.nothing};
-  const auto shift = [](unsigned side) {
+  // The voxels that touch what the union has lost, by the side on which they do.
+  const Octree lost = intersect(before.all, gone, {work.threads, {}});
+  std::vector<Octree> beside;
+  const auto beside_along = [&](unsigned side) {
     std::array<std::int64_t, 3> by{};
     by[side / 2] = side % 2 ? -1 : 1;  // what lies above a voxel comes down to it
-    return by;
+    return translate(lost, by, Leaving::clip, {work.threads, {}});
   };
-  for (unsigned side = 0; side < 6; ++side)
-    beside[side] = subtract(translate(gone, shift(side), Leaving::clip), gone, {work.threads, {}});
+  for (unsigned side = 0; side < 6; ++side) beside.push_back(beside_along(side));
 
   Storage after{before.solids, before.all, {}, before.nothing};
-  after.cut.assign(before.solids.size(), beside);
+  after.cut.assign(before.solids.size(),
+                   {before.nothing, before.nothing, before.nothing, before.nothing, before.nothing, before.nothing});
   detail::for_each_index(before.solids.size(), work, [&](std::size_t i) {
-    const Octree& solid = before.solids[i];
-    const Octree kept = subtract(solid, gone, {1, {}}), lost = intersect(solid, gone, {1, {}});
+    const Octree kept = subtract(before.solids[i], gone, {1, {}});
     for (unsigned side = 0; side < 6; ++side) {
       Octree& faces = after.cut[i][side];
-      const Octree near = intersect(kept, beside[side], {1, {}});
-      faces = near.is_empty() ? near : intersect(near, translate(lost, shift(side), Leaving::clip, {1, {}}), {1, {}});
+      faces = intersect(kept, beside[side], {1, {}});
       // Faces that an earlier cut has made.
       if (!before.cut.empty()) faces = unite(faces, intersect(before.cut[i][side], kept, {1, {}}), {1, {}});
     }

@@ -107,7 +107,6 @@ TEST_F(LabelsCommand, EveryLabelOpensAsItsOwnOctree) {
 }
 
 TEST_F(LabelsCommand, WithoutALabelAllButZeroAreOneSolid) {
-  noted({"draw", "a.octree", "--view", "1,2,3", "-o", "a.svg"});
   noted({"export", "a.octree", "-o", "a.stl"});
   EXPECT_EQ(done({"translate", "a.octree", "0,0,0", "-o", "q.octree", "--quiet"}).out, "");
 }

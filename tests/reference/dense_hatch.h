@@ -10,26 +10,25 @@ namespace blackleaf::reference {
 
 /// Dense solids of a scene, and what boxes took away of them.
 struct DenseCutScene {
-  std::vector<DenseGrid> kept, lost;
+  std::vector<DenseGrid> kept;
+  DenseGrid lost;  // by the union
 
-  DenseCutScene(const std::vector<DenseGrid>& solids, const std::vector<Box>& boxes) : kept(solids) {
-    for (DenseGrid& grid : kept) {
-      DenseGrid gone(grid.depth);
+  DenseCutScene(const std::vector<DenseGrid>& solids, const std::vector<Box>& boxes)
+      : kept(solids), lost(solids.front().depth) {
+    for (DenseGrid& grid : kept)
       for (const Box& box : boxes)
         for (int z = std::max(0, box.min[2]); z < std::min(grid.side(), box.max[2]); ++z)
           for (int y = std::max(0, box.min[1]); y < std::min(grid.side(), box.max[1]); ++y)
             for (int x = std::max(0, box.min[0]); x < std::min(grid.side(), box.max[0]); ++x) {
-              if (grid.at(x, y, z)) gone.set(x, y, z);
+              if (grid.at(x, y, z)) lost.set(x, y, z);
               grid.set(x, y, z, false);
             }
-      lost.push_back(gone);
-    }
   }
   /// Whether the face of a voxel across an axis, on its upper or lower side, is a cut face of a solid.
   bool is_cut(std::size_t solid, std::array<int, 3> voxel, std::size_t axis, bool upward) const {
     if (!kept[solid].at(voxel[0], voxel[1], voxel[2])) return false;
     voxel[axis] += upward ? 1 : -1;
-    return lost[solid].at(voxel[0], voxel[1], voxel[2]);
+    return lost.at(voxel[0], voxel[1], voxel[2]);
   }
 };
 
