@@ -37,9 +37,9 @@ class Scene {
   const Octree& all() const;
 
   /// The scene without the voxels of some boxes, cut open: a face between a voxel that is left and one that was taken
-  /// away, both of which were in the union, is a cut face and can be hatched (hatch.h). Other faces were surface before,
-  /// also where they end at a box. Solids keep their places in the list, also when nothing is left of them. O(words of
-  /// all and of the cut faces).
+  /// away, both of which were in the union, is a cut face and can be hatched (hatch.h). Other faces were surface
+  /// before, also where they end at a box. Solids keep their places in the list, also when nothing is left of them.
+  /// O(words of all and of the cut faces).
   Scene without(std::span<const Box> removed, const Work& work = {}) const;
 
   /// The voxels of one solid whose face towards lower (`upward` false) or higher coordinates along an axis (0..2) is a
@@ -83,9 +83,9 @@ struct SceneOptions {
   bool outline = false;  // tell outlines from other visible lines
   /// A visible point is on the outline iff the sight line through it, followed away from the viewer, meets no interior
   /// for this many voxels: what lies behind it there is at least so far away, or the background. Any positive number;
-  /// infinity keeps only what stands out against the background. Along d, the whole-number view direction, the gap is
-  /// rounded down once to a multiple of 1/D, D being |d_b d_c| for edges along axis a (or the one of the two that is
-  /// not zero).
+  /// infinity keeps only what stands out against the background. In times of d, the whole-number view direction, the
+  /// gap is rounded up once to a multiple of 1/D, D being |d_b d_c| for edges along axis a (or the one of the two that
+  /// is not zero).
   double outline_gap = std::numeric_limits<double>::infinity();
 };
 

@@ -28,6 +28,7 @@
 
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
@@ -77,11 +78,12 @@ struct EdgeFamily {
     }
   }
 
-  /// The time tau at which rays have gone `times` d, rounded down; the largest there is for anything beyond 2^61.
+  /// The time tau at which rays have gone `times` d, rounded up; the largest there is for anything beyond 2^61.
   /// Requires: times >= 0.
   std::int64_t time_of(double times) const {
     const double tau = times * static_cast<double>(scale);
-    return tau < 2305843009213693952.0 ? static_cast<std::int64_t>(tau) : std::numeric_limits<std::int64_t>::max();
+    return tau < 2305843009213693952.0 ? static_cast<std::int64_t>(std::ceil(tau))
+                                       : std::numeric_limits<std::int64_t>::max();
   }
 
   /// The picture's name of the positions `visible` of the edge at (b, c) = (at_b, at_c). Requires: mode is not end_on.

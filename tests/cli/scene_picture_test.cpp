@@ -163,8 +163,10 @@ TEST_F(ScenePictures, StepsAlongAPath) {
   ASSERT_EQ(two.size(), 2u);
   EXPECT_NEAR(length(two.at("b.octree step 1 visible")), 24, 1e-12);
   EXPECT_NEAR(length(two.at("b.octree step 2 visible")), 24 - 6, 1e-12);  // but for what is the first one's
-  const auto beside = layers({"b.octree", "c.octree", "--path", "way.json", "--steps", "3", "--view", "1,-1,1"});
-  EXPECT_EQ(beside.count("c.octree visible"), 1u);
+  make_box("d.octree", 4, {11, 1, 1}, {14, 3, 3});
+  const auto beside = layers({"b.octree", "d.octree", "--path", "way.json", "--steps", "3", "--view", "1,-1,1"});
+  EXPECT_EQ(beside.size(), 4u);
+  EXPECT_EQ(beside.at("d.octree visible").size(), 9u);
   refused({"draw", "b.octree", "--path", "way.json", "--steps", "0", "--view", "1,2,3", "-o", "p.svg"}, "--steps");
   refused({"draw", "b.octree", "--steps", "2", "--view", "1,2,3", "-o", "p.svg"}, "--steps belongs to --path");
   write("far.json", R"({"poses": [{"time": 0, "translation": [0, 0, 0]}, {"time": 1, "translation": [0, 0, 30]}]})");

@@ -69,9 +69,10 @@ class DenseScene {
     const Wide d_b = d_[(axis + 1) % 3], d_c = d_[(axis + 2) % 3];
     if (d_b == 0 && d_c == 0) return;
     const Wide scale = absolute((d_b == 0 ? 1 : d_b) * (d_c == 0 ? 1 : d_c));
-    // The gap behind outlines in times of d, rounded down to 1 / scale.
+    // The gap behind outlines in times of d, rounded up to 1 / scale.
     const double gap = options_.outline_gap / std::sqrt(static_cast<double>(dot(d_, d_))) * static_cast<double>(scale);
-    const Wide stop = gap < 1e15 ? static_cast<Wide>(static_cast<std::int64_t>(gap)) : Wide{-1};  // -1: never
+    const Wide stop =
+        gap < 1e15 ? static_cast<Wide>(static_cast<std::int64_t>(std::ceil(gap))) : Wide{-1};  // -1: never
     const int n = all_.side();
     std::array<int, 3> at{};
     for (at[0] = 0; at[0] <= n; ++at[0])
