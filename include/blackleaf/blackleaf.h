@@ -10,6 +10,7 @@
 #include "blackleaf/error.h"
 #include "blackleaf/first_contact.h"
 #include "blackleaf/frame.h"
+#include "blackleaf/hatch.h"
 #include "blackleaf/implicit.h"
 #include "blackleaf/label_map.h"
 #include "blackleaf/label_voxels.h"
