@@ -1,6 +1,8 @@
 // blackleaf collide: whether two solids interfere, by how much, how far apart they are.
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -10,6 +12,7 @@
 #include "blackleaf/contact.h"
 #include "blackleaf/distance.h"
 #include "blackleaf/error.h"
+#include "blackleaf/measures.h"
 #include "blackleaf/move.h"
 #include "blackleaf/resample.h"
 #include "blackleaf/set_operations.h"
@@ -75,6 +78,22 @@ std::string as_text(const Answer& answer) {
   return fmt::format("they do not interfere: {:.10g} voxels apart, from {} to {}\n", voxels, point(on_a), point(on_b));
 }
 
+// True iff black voxels of b lie outside the universe of a, in the world.
+bool sticks_out(const Octree& b, const Octree& a) {
+  const auto box = bounding_box(b);
+  if (!box) return false;
+  const Eigen::FullPivLU<Eigen::Matrix3d> lu(a.frame().axes);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d at;
+    for (std::size_t i = 0; i < 3; ++i)
+      at[static_cast<Eigen::Index>(i)] = (corner >> i & 1) != 0 ? box->max[i] : box->min[i];
+    const Eigen::Vector3d placed = lu.solve(b.frame().to_world(at) - a.frame().origin);
+    constexpr double kDust = 1e-6;
+    if (placed.minCoeff() < -kDust || placed.maxCoeff() > a.side() + kDust) return true;
+  }
+  return false;
+}
+
 // A and B as they are compared: in one universe.
 std::pair<Octree, Octree> read_both(Session& session, const std::string& a_name, const Label& a_label,
                                     const std::string& b_name, const Label& b_label, bool align, bool resample) {
@@ -91,6 +110,8 @@ std::pair<Octree, Octree> read_both(Session& session, const std::string& a_name,
   if (resample) {
     const Octree placed =
         session.stage("resample", [&](const Work& work) { return resampled(b, a.frame(), a.depth(), work); });
+    if (sticks_out(b, a))
+      session.warn(fmt::format("parts of '{}' are outside the universe of '{}' and are not looked at", b_name, a_name));
     return {a, placed};
   }
   check_voxel_sizes(a, a_name, b, b_name);

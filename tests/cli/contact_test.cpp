@@ -131,6 +131,10 @@ TEST_F(Collide, FramesThatDoNotMatch) {
           "the voxels of 'a.octree' measure 1 voxel and those of 'fine.octree' 0.5 voxel");
   EXPECT_EQ(run({"collide", "a.octree", "fine.octree", "--resample", "--json"}).json()["distance"], 5.0);
   EXPECT_EQ(run({"collide", "a.octree", "fine.octree", "--resample", "--exact", "--translate", "-6,-5,-1"}).code, 1);
+  save(box(6, {24, 22, 16}, {32, 30, 24}, Frame{{20, 0, 0}, fine.axes, fine.unit}), folder() / "out.octree");
+  EXPECT_NE(run({"collide", "a.octree", "out.octree", "--resample"}).err.find("parts of 'out.octree' are outside"),
+            std::string::npos);
+  EXPECT_EQ(run({"collide", "a.octree", "fine.octree", "--resample"}).err, "");
   Frame aside;
   aside.origin = {-2, 0, 0};
   save(box(4, {12, 11, 8}, {16, 15, 12}, aside), folder() / "aside.octree");
