@@ -75,11 +75,11 @@ constexpr double kPageSide = 110, kImageSide = 34;  // millimetres
 // An image as small black and white squares: a path of its runs of object pixels.
 std::string image_svg(const Silhouette& image) {
   std::string path;
-  for (int row = 0; row < image.height; ++row)
+  const std::uint8_t* line = image.pixels.data();
+  for (int row = 0; row < image.height; ++row, line += image.width)
     for (int column = 0; column < image.width;) {
-      const auto pixel = [&](int at) { return image.pixels[static_cast<std::size_t>(row * image.width + at)] != 0; };
       int end = column;
-      while (end < image.width && pixel(end)) ++end;
+      while (end < image.width && line[end] != 0) ++end;
       if (end > column) path += fmt::format("M{} {}h{}v1H{}z", column, row, end - column, column);
       column = end + 1;
     }
