@@ -1,10 +1,14 @@
 // blackleaf draw: exact hidden-line drawings of octrees (VA88), of one or several in a picture.
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "blackleaf/drawing.h"
 #include "blackleaf/drawing_file.h"
 #include "blackleaf/error.h"
+#include "blackleaf/perspective.h"
 #include "commands.h"
+#include "draw_eye.h"
 #include "draw_page.h"
 #include "draw_pens.h"
 #include "draw_scene.h"
@@ -19,8 +23,9 @@ namespace {
 
 // A picture without a page, and with one.
 struct Result {
-  std::optional<View> view;   // of a picture without a sheet
-  std::vector<Layer> layers;  // of that, in voxels
+  std::optional<View> view;                // of a picture without a sheet
+  std::optional<Perspective> perspective;  // if it is one
+  std::vector<Layer> layers;               // of that, in voxels
   std::size_t strokes = 0;
   double length = 0;  // voxels
   std::optional<OrderedPicture> page;
@@ -34,11 +39,18 @@ struct Seen {
 };
 
 Seen seen_from(const NamedScene& named, const SceneArguments& scene, const PenArguments& pens, const View& view,
-               const Work& work) {
+               const Work& work, const std::optional<Perspective>& perspective = {}) {
   bool cut = false;
   Scene opened = scene.seen_from(named.scene, view, cut, {work.threads, {}});
   Seen seen{std::move(opened), cut, {}};
-  seen.lines = draw(seen.scene, view, pens.lines(seen.scene.all().side()), work);
+  SceneOptions options = pens.lines(seen.scene.all().side());
+  if (perspective) {
+    options.outline_gap = std::numeric_limits<double>::infinity();
+    seen.cut = false;  // nothing is hatched in perspective
+    seen.lines = draw(seen.scene, *perspective, options, work);
+  } else {
+    seen.lines = draw(seen.scene, view, options, work);
+  }
   return seen;
 }
 
@@ -61,7 +73,7 @@ std::vector<Layer> layers_of(const NamedScene& named, const PenArguments& pens, 
 Picture page_of(const NamedScene& named, const SceneArguments& scene, const PenArguments& pens,
                 const PageArguments& page, Result& result, const Work& work) {
   const View& view = *result.view;
-  Seen seen = seen_from(named, scene, pens, view, work);
+  Seen seen = seen_from(named, scene, pens, view, work, result.perspective);
   const bool hatched = pens.hatch() || seen.cut;
   std::vector<Layer> layers = pens.layers(named, seen.lines);
   const PageOptions options = page.page_for(layers);
@@ -94,6 +106,11 @@ void report(const Session& session, const std::string& output, const Result& res
   if (session.json()) {
     Json json{{"output", output}};
     if (result.view) json["view"] = result.view->direction();
+    if (result.perspective) {
+      const EyePoint& point = *result.view->eye_point();
+      json["eye"] = {point.eye[0], point.eye[1], point.eye[2]};
+      json["target"] = {point.target[0], point.target[1], point.target[2]};
+    }
     json["strokes"] = result.strokes;
     json["length"] = result.length;
     json["file_bytes"] = file_bytes ? Json(*file_bytes) : Json();
@@ -112,12 +129,14 @@ int run_draw(Session& session) {
   std::string output;
   std::optional<std::string> view_text;
   SceneArguments scene;
+  EyeArguments eye;
   PageArguments page;
   PenArguments pens;
   SheetArguments sheet;
   scene.add_to(session.app());
   add_text(session.app(), "--view", view_text, "x,y,z",
            "direction toward the viewer, rounded to 2^-20 of its largest component; +z is up in the picture");
+  eye.add_to(session.app());
   add_output(session.app(), output, "picture: .svg .pdf .png .hpgl .dxf .json; - prints svg, hpgl, dxf or json");
   page.add_to(session.app());
   pens.add_to(session.app());
@@ -133,12 +152,17 @@ int run_draw(Session& session) {
   // JSON of one kind of lines has strokes only, and no layers that could have pens.
   page.check(in_voxels, pens.given() && pens.plain() && scene.file_count() == 1);
   sheet.check(page.size());
+  using Other = std::optional<std::string>;
+  eye.check(view_text ? Other("--view") : sheet.given() ? Other("--sheet") : std::nullopt);
+  if (eye.given()) pens.check_perspective();
   Result result;
   if (!sheet.given()) {
-    if (!view_text)
-      throw Error(ErrorCode::bad_argument, "--view is required", "give one like --view 3,-4,2, or --sheet");
-    result.view = parse_view(*view_text);
-    scene.require_faced(*result.view);
+    if (!view_text && !eye.given())
+      throw Error(ErrorCode::bad_argument, "--view is required", "give one like --view 3,-4,2, or --eye, or --sheet");
+    if (view_text) {
+      result.view = parse_view(*view_text);
+      scene.require_faced(*result.view);
+    }
   } else if (view_text) {
     throw Error(ErrorCode::bad_argument, "--sheet has views of its own", "leave out --view");
   }
@@ -148,6 +172,11 @@ int run_draw(Session& session) {
 
   const NamedScene named = scene.read(session);
   pens.check(named);
+  if (eye.given()) {
+    result.perspective = eye.perspective(named.scene.all());
+    result.view = result.perspective->view();
+    scene.require_faced(*result.view);
+  }
   const std::string source = scene.source();
   Picture picture = session.stage("draw", [&](const Work& work) {
     if (sheet.given()) {
@@ -156,7 +185,7 @@ int run_draw(Session& session) {
       return sheet_of(named, scene, pens, options, result, work);
     }
     if (!in_voxels) return page_of(named, scene, pens, page, result, work);
-    Seen seen = seen_from(named, scene, pens, *result.view, work);
+    Seen seen = seen_from(named, scene, pens, *result.view, work, result.perspective);
     if (pens.hatch() || seen.cut) add_hatching(seen, pens, *result.view, std::nullopt, work);
     result.layers = layers_of(named, pens, std::move(seen), result);
     return Picture{};

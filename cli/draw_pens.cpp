@@ -121,6 +121,16 @@ void PenArguments::check(bool in_voxels, bool cut) const {
                 "give it in voxels, like 4voxels");
 }
 
+void PenArguments::check_perspective() const {
+  if (hatch_ || hatch_spacing_)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} is for --view and --sheet, not for --eye", hatch_ ? "--hatch" : "--hatch-spacing"),
+                "leave it out");
+  if (outline_gap_)
+    throw Error(ErrorCode::bad_argument, "--outline-gap is for --view and --sheet, not for --eye",
+                "leave it out: outlines stand out against the background then");
+}
+
 void PenArguments::check(const NamedScene& scene) const {
   const std::size_t files = scene.solids.back().file + 1;
   const std::size_t most = files == 1 && scene.solids.front().label ? scene.solids.size() : files;

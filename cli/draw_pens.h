@@ -18,6 +18,8 @@ class PenArguments {
   /// Throws Error(bad_argument) for forms that are wrong and options that do not go together; `in_voxels` when the
   /// output has no page, `cut` when the scene is cut open.
   void check(bool in_voxels, bool cut) const;
+  /// Throws Error(bad_argument) for what pictures in perspective have none of.
+  void check_perspective() const;
   /// Throws Error(bad_argument) for pens of solids that are not there.
   void check(const NamedScene& scene) const;
 

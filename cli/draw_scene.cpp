@@ -60,6 +60,12 @@ std::vector<Octree> on_its_way(Session& session, const Octree& solid, const Path
   });
 }
 
+// Above zero if the viewer is above the plane x_axis = at, below zero below it.
+double side_of_viewer(const View& view, std::size_t axis, std::int32_t at) {
+  if (view.eye_point()) return view.eye_point()->eye[static_cast<Eigen::Index>(axis)] - at;
+  return static_cast<double>(view.direction()[axis]);
+}
+
 }  // namespace
 
 void SceneArguments::add_to(CLI::App& app) {
@@ -111,8 +117,9 @@ void SceneArguments::require_faced(const View& view) const {
   for (const std::string& text : cuts_) {
     const Planes planes = parse_cut(text);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if (planes[axis] && view.direction()[axis] == 0)
-        throw Error(ErrorCode::bad_argument, fmt::format("--cut {}: --view sees the plane edge-on", text),
+      if (planes[axis] && side_of_viewer(view, axis, *planes[axis]) == 0)
+        throw Error(ErrorCode::bad_argument,
+                    fmt::format("--cut {}: --{} sees the plane edge-on", text, view.eye_point() ? "eye" : "view"),
                     "turn the view, or cut across another axis");
   }
 }
@@ -187,9 +194,10 @@ Scene SceneArguments::seen_from(const Scene& scene, const View& view, bool& cut,
     bool edge_on = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!planes[axis]) continue;
-      edge_on = edge_on || view.direction()[axis] == 0;
+      const double side_of = side_of_viewer(view, axis, *planes[axis]);
+      edge_on = edge_on || side_of == 0;
       const std::int32_t at = std::min(*planes[axis], side);
-      (view.direction()[axis] > 0 ? box.min : box.max)[axis] = at;
+      (side_of > 0 ? box.min : box.max)[axis] = at;
     }
     if (!edge_on) removed.push_back(box);
   }

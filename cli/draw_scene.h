@@ -34,7 +34,8 @@ class SceneArguments {
 
   std::size_t file_count() const { return files_.size(); }
   bool cut() const { return !cuts_.empty(); }
-  /// Throws Error(bad_argument) when a cut is seen edge-on, so that no side of it is the viewer's.
+  /// Throws Error(bad_argument) when a cut is seen edge-on, so that no side of it is the viewer's. `view` may be the
+  /// screen of a perspective.
   void require_faced(const View& view) const;
   /// The names of the files, for titles.
   std::string source() const;
