@@ -12,6 +12,7 @@
 #include "blackleaf/error.h"
 #include "blackleaf/label_map.h"
 #include "blackleaf/octree.h"
+#include "blackleaf/volume_file.h"
 #include "session.h"
 
 namespace blackleaf::cli {
@@ -32,6 +33,9 @@ struct BuildOptions {
 void declare_mesh_options(CLI::App& app, BuildOptions& options, CLI::Option* like);
 Octree build_mesh(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 void declare_volume_options(CLI::App& app, BuildOptions& options, CLI::Option* like);
+/// The options for volumes, into the library's; notes them in `facts`.
+VolumeOptions volume_options(const Session& session, const BuildOptions& options, const std::optional<Octree>& like,
+                             Json& facts);
 Octree build_volume(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 void declare_points_options(CLI::App& app, BuildOptions& options);
 Octree build_points(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);

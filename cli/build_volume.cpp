@@ -48,7 +48,8 @@ void declare_volume_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
       ->excludes(like);
 }
 
-Octree build_volume(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
+VolumeOptions volume_options(const Session& session, const BuildOptions& o, const std::optional<Octree>& like,
+                             Json& facts) {
   VolumeOptions options;
   if (o.range) {
     const Range range = parse_range("--range", *o.range);
@@ -60,6 +61,11 @@ Octree build_volume(Session& session, const BuildOptions& o, const std::optional
   if (o.label) facts["label"] = *o.label;
   take_volume_options(session, o, like, facts, options);
   if (like) facts["like"] = base_name(*o.like);
+  return options;
+}
+
+Octree build_volume(Session& session, const BuildOptions& o, const std::optional<Octree>& like, Json& facts) {
+  const VolumeOptions options = volume_options(session, o, like, facts);
   // The volume is built while it is read, so this is one stage.
   Octree octree = session.stage("build", [&](const Work& work) { return read_volume(o.input, options, work); });
   facts["depth"] = octree.depth();

@@ -16,15 +16,13 @@
 namespace blackleaf::cli {
 namespace {
 
-using Operation = Octree (*)(std::span<const Octree>, const Work&);
-
 // A without all the others.
 Octree subtract_all(std::span<const Octree> octrees, const Work& work) {
   return subtract(octrees.front(), octrees.size() == 2 ? octrees.back() : unite(octrees.subspan(1), work), work);
 }
 
-Operation operation_of(const std::string& name, const std::string& before, const std::string& after) {
-  static const std::map<std::string, Operation> operations = {
+SetOperation operation_of(const std::string& name, const std::string& before, const std::string& after) {
+  static const std::map<std::string, SetOperation> operations = {
       {"and", intersect}, {"or", unite}, {"minus", subtract_all}, {"xor", symmetric_difference}};
   const auto chosen = operations.find(name);
   if (chosen == operations.end())
@@ -57,7 +55,7 @@ int run_combine(Session& session) {
   session.set_example("blackleaf combine bunny.octree minus ball.octree -o hollow.octree");
   if (!session.parse()) return kDone;
 
-  const Operation chosen = operation_of(operation, first_name, other_names.front());
+  const SetOperation chosen = operation_of(operation, first_name, other_names.front());
   if ((first_name == "-" ? 1 : 0) + std::count(other_names.begin(), other_names.end(), "-") > 1)
     throw Error(ErrorCode::bad_argument, "more than one octree is - for standard input", "name files for the others");
   check_octree_output(session, output);
@@ -72,9 +70,9 @@ int run_combine(Session& session) {
                                     "with --align"));
     }
   }
-  const Octree result = session.stage("combine", [&](const Work& work) {
+  const Made result = session.stage("combine", [&](const Work& work) {
     if (align) octrees = aligned(octrees, work);
-    return chosen(octrees, work);
+    return session.machine().combine(octrees, chosen, work);
   });
   warn_if_empty(session, result);
   Json with = Json::array();

@@ -13,32 +13,32 @@
 #include "session.h"
 
 namespace blackleaf::cli {
-int report_current_exception() {
+
+Ending ending_of_current_exception() {
   try {
     throw;
   } catch (const Error& error) {
     // Whatever a signal made fail, the signal is the reason.
-    if (const int signal = interrupt_signal(); signal != 0) {
-      print_message(printed()               ? "interrupted; what was printed is incomplete"
-                    : left_behind().empty() ? "interrupted; nothing was written"
-                                            : "interrupted; " + left_behind());
-      return kSignal + signal;
-    }
-    print_message(error.what());
-    return kBadInput;
+    if (const int signal = interrupt_signal(); signal != 0)
+      return {kSignal + signal, printed()               ? "interrupted; what was printed is incomplete"
+                                : left_behind().empty() ? "interrupted; nothing was written"
+                                                        : "interrupted; " + left_behind()};
+    return {kBadInput, error.what()};
   } catch (const std::filesystem::filesystem_error& error) {
-    print_message(error.what());
-    return kBadInput;
+    return {kBadInput, error.what()};
   } catch (const std::bad_alloc&) {
-    print_message("out of memory; try a smaller --depth");
-    return kFault;
+    return {kFault, "out of memory; try a smaller --depth"};
   } catch (const std::exception& error) {
-    print_message(fmt::format("internal fault: {}; please report it with the command that caused it", error.what()));
-    return kFault;
+    return {kFault, fmt::format("internal fault: {}; please report it with the command that caused it", error.what())};
   } catch (...) {
-    print_message("internal fault of unknown kind; please report it with the command that caused it");
-    return kFault;
+    return {kFault, "internal fault of unknown kind; please report it with the command that caused it"};
   }
+}
+
+int report_current_exception() {
+  const Ending ending = ending_of_current_exception();
+  print_message(ending.message);
+  return ending.code;
 }
 
 }  // namespace blackleaf::cli

@@ -12,7 +12,6 @@
 #include <iterator>
 
 #include "blackleaf/error.h"
-#include "blackleaf/measures.h"
 
 namespace fs = std::filesystem;
 
@@ -115,8 +114,15 @@ void check_output(const std::string& path) {
                 "change its permissions or name another output");
 }
 
+void check_octree_input(const std::string& path) {
+  check_input(path, "an octree file");
+  refuse_named_pipe(path);
+}
+
 void check_octree_output(const Session& session, const std::string& path) {
   if (path == "-") {
+    if (session.machine().is_shared())
+      throw Error(ErrorCode::bad_argument, "many processes cannot write one standard output", "name a file after -o");
     if (session.json())
       throw Error(ErrorCode::bad_argument, "-o - and --json both want standard output", "write the octree to a file");
     if (isatty(STDOUT_FILENO) == 1)
@@ -168,12 +174,7 @@ bool is_octree_data(const std::vector<std::uint8_t>& bytes) {
 }
 
 OctreeFile read_octree(Session& session, const std::string& path) {
-  return session.stage("read", [&](const Work&) {
-    if (path == "-") return from_bytes(read_bytes(path), "standard input");
-    check_input(path, "an octree file");
-    refuse_named_pipe(path);
-    return load(path);
-  });
+  return session.stage("read", [&](const Work&) { return session.machine().load(path); });
 }
 
 Octree read_beside(Session& session, const Octree& first, const std::string& first_name, const std::string& name,
@@ -221,8 +222,10 @@ void check_voxel_sizes(const Octree& first, const std::string& first_name, const
                 "put the second on the voxels of the first with --resample");
 }
 
-void warn_if_empty(const Session& session, const Octree& octree) {
-  if (octree.is_empty()) session.warn("no voxel is black");
+void warn_if_empty(const Session& session, const Octree& octree) { warn_if_empty(session, Made{octree}); }
+
+void warn_if_empty(const Session& session, const Made& made) {
+  if (session.machine().is_empty(made)) session.warn("no voxel is black");
 }
 
 std::string metadata_text(const Session& session, const std::string& source, const Json& options) {
@@ -244,33 +247,39 @@ void print_octree_bytes(Session& session, const std::function<std::vector<std::u
 
 void write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
                   const Json& options, const Json& more, const std::string& before) {
+  write_octree(session, Made{octree}, path, source, options, more, before);
+}
+
+void write_octree(Session& session, const Made& made, const std::string& path, const std::string& source,
+                  const Json& options, const Json& more, const std::string& before) {
+  Machine& machine = session.machine();
   const std::string text = metadata_text(session, source, options);
   if (path == "-") {
-    print_octree_bytes(session, [&] { return to_bytes(octree, text); });
+    print_octree_bytes(session, [&] { return to_bytes(made.octree, text); });
     return;
   }
   const bool telling = session.json() || !session.quiet();
-  Measures measures;
-  if (telling) measures = session.stage("measure", [&](const Work&) { return measure(octree); });
-  session.write_stage([&] { save(octree, path, text); });
+  Told told;
+  if (telling) told = session.stage("measure", [&](const Work&) { return machine.tell_of(made); });
+  session.write_stage([&] { machine.save(made, path, text); });
   if (!before.empty()) print_out(before);
   if (!telling) return;
   const std::optional<std::uint64_t> file_bytes = size_of(path);
   if (session.json()) {
     Json report = {{"output", path},
-                   {"depth", octree.depth()},
-                   {"volume", measures.volume},
-                   {"black_leaves", measures.black_leaves},
-                   {"internal_nodes", measures.internal_nodes},
-                   {"memory_bytes", octree.memory_bytes()},
+                   {"depth", made.octree.depth()},
+                   {"volume", told.volume},
+                   {"black_leaves", told.black_leaves},
+                   {"internal_nodes", told.internal_nodes},
+                   {"memory_bytes", told.memory_bytes},
                    {"file_bytes", file_bytes ? Json(*file_bytes) : Json()}};
     report.update(more);
     print_out(report);
     return;
   }
-  print_out(fmt::format("{}: depth {}, {}, {}, {}{}\n", path, octree.depth(), counted(measures.volume, "voxel"),
-                        measures.black_leaves == 1 ? "1 black leaf" : grouped(measures.black_leaves) + " black leaves",
-                        counted(measures.internal_nodes, "internal node"),
+  print_out(fmt::format("{}: depth {}, {}, {}, {}{}\n", path, made.octree.depth(), counted(told.volume, "voxel"),
+                        told.black_leaves == 1 ? "1 black leaf" : grouped(told.black_leaves) + " black leaves",
+                        counted(told.internal_nodes, "internal node"),
                         file_bytes ? ", " + counted(*file_bytes, "byte") : ""));
 }
 

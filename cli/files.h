@@ -27,6 +27,8 @@ void check_input(const std::string& path, const std::string& what);
 void check_plain_input(const std::string& path, const std::string& what);
 /// The same where a folder is as good as a file.
 void check_input_or_folder(const std::string& path, const std::string& what);
+/// The same for octree files: refuses named pipes as well.
+void check_octree_input(const std::string& path);
 /// Throws Error(io) when `path` plainly cannot be written: its folder is missing or closed to us, or it is a
 /// folder.
 void check_output(const std::string& path);
@@ -64,8 +66,11 @@ void print_octree_bytes(Session& session, const std::function<std::vector<std::u
 /// under --quiet. What it tells is measured before the file is put in place, so that an interrupt can come no later.
 void write_octree(Session& session, const Octree& octree, const std::string& path, const std::string& source,
                   const Json& options, const Json& more = Json::object(), const std::string& before = {});
+void write_octree(Session& session, const Made& made, const std::string& path, const std::string& source,
+                  const Json& options, const Json& more = Json::object(), const std::string& before = {});
 /// Warns if a result holds nothing.
 void warn_if_empty(const Session& session, const Octree& octree);
+void warn_if_empty(const Session& session, const Made& made);
 
 /// The name without its folders; "-" becomes "standard input".
 std::string base_name(const std::string& path);

@@ -102,7 +102,7 @@ void write_labels(Session& session, const LabelMap& labels, const std::string& p
   const bool telling = session.json() || !session.quiet();
   Measures solid;
   if (telling) solid = session.stage("measure", [&](const Work&) { return measure(octree_from_labels(labels)); });
-  session.write_stage([&] { save(labels, path, metadata); });
+  session.write_stage([&] { session.machine().once([&] { save(labels, path, metadata); }); });
   if (!before.empty()) print_out(before);
   if (!telling) return;
   const std::optional<std::uint64_t> file_bytes = size_of(path);

@@ -69,7 +69,8 @@ int run(const std::vector<std::string>& arguments) {
   }
   for (const Command& command : kCommands) {
     if (name != command.name) continue;
-    Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()});
+    Machine machine;
+    Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()}, machine);
     const int code = command.run(session);
     session.print_remarks();
     session.print_timings();

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "blackleaf/label_map.h"
-#include "blackleaf/measures.h"
 #include "commands.h"
 #include "files.h"
 #include "motion_options.h"
@@ -18,8 +17,8 @@ namespace {
 // WA87's Table 2 in columns: black leaves B, internal nodes I, most internal nodes held at once M, voxels V, and I/V.
 // The paper makes nodes that later leaves turn out to be superfluous, so its M is above I. Here a node is made when all
 // below it is known and only if it stays: M = I. The source is not computed and has no M.
-std::string table(const Measures& source, const Measures& target) {
-  const auto share = [](const Measures& m) {
+std::string table(const Told& source, const Told& target) {
+  const auto share = [](const Told& m) {
     return m.volume == 0 ? std::string("-")
                          : fmt::format("{:.3g}", static_cast<double>(m.internal_nodes) / static_cast<double>(m.volume));
   };
@@ -31,7 +30,7 @@ std::string table(const Measures& source, const Measures& target) {
   return text;
 }
 
-Json row(const Measures& m) {
+Json row(const Told& m) {
   Json object = {{"black_leaves", m.black_leaves}, {"internal_nodes", m.internal_nodes}, {"volume", m.volume}};
   object["internal_nodes_per_voxel"] = nullptr;
   if (m.volume > 0)
@@ -70,12 +69,12 @@ int run_move(Session& session) {
     session.warn(
         "no motion is given, so the solid stays where it is; give --rotate, --translate, --matrix or --reflect");
   std::optional<LabelMap> labels;
-  Octree target;
+  Made target;
   session.stage("move", [&](const Work& work) {
     if (all_labels)
       labels = move(transform(*file.labels, reflection, work), motion, leaving.choice(), work);
     else
-      target = move(transform(source, reflection, work), motion, leaving.choice(), work);
+      target = session.machine().move(source, reflection, motion, leaving.choice(), work);
   });
   Json options = motion_options.as_json(motion);
   options["leaving"] = leaving.name();
@@ -84,7 +83,8 @@ int run_move(Session& session) {
   std::string rows;
   if (stats && (session.json() || output != "-")) {
     const auto [before, after] = session.stage("measure", [&](const Work&) {
-      return std::pair(measure(source), measure(labels ? octree_from_labels(*labels) : target));
+      return std::pair(Machine().tell_of({source}),
+                       labels ? Machine().tell_of({octree_from_labels(*labels)}) : session.machine().tell_of(target));
     });
     more["stats"] = {{"source", row(before)}, {"target", row(after)}};
     more["stats"]["target"]["peak_internal_nodes"] = after.internal_nodes;

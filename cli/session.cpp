@@ -71,11 +71,17 @@ class HelpFormatter : public CLI::Formatter {
 
 bool printed_something = false;
 std::string left_behind_text;
+std::string program_name = "blackleaf";
+bool program_speaks = true;
 
 }  // namespace
 
-Session::Session(const std::string& command, const std::string& description, std::vector<std::string> arguments)
-    : command_(command), arguments_(std::move(arguments)), app_(description, "blackleaf " + command) {
+Session::Session(const std::string& command, const std::string& description, std::vector<std::string> arguments,
+                 Machine& machine)
+    : command_(command),
+      arguments_(std::move(arguments)),
+      machine_(machine),
+      app_(description, program() + " " + command) {
   app_.formatter(std::make_shared<HelpFormatter>());
   app_.set_help_flag("-h,--help", "print this help and exit");
 }
@@ -91,6 +97,7 @@ bool Session::parse() {
   app_.add_flag("--timings", timings_,
                 "last line of standard error: one JSON object with seconds by stage, threads, peak memory in bytes")
       ->group(group);
+  machine_.add_options(app_);
   // CLI11 takes the arguments last first.
   std::vector<std::string> reversed(arguments_.rbegin(), arguments_.rend());
   std::string problem;
@@ -111,10 +118,11 @@ bool Session::parse() {
   // CLI11 has no clear words for an option that is there twice.
   for (const CLI::Option* option : app_.get_options())
     if (option->get_type_size() != 0 && option->get_expected_max() == 1 && option->count() > 1)
-      throw Error(ErrorCode::bad_argument,
-                  fmt::format("{} is given {}, in blackleaf {}", option->get_name(),
-                              option->count() == 2 ? "twice" : fmt::format("{} times", option->count()), command_),
-                  "give it once");
+      throw Error(
+          ErrorCode::bad_argument,
+          fmt::format("{} is given {}, in {} {}", option->get_name(),
+                      option->count() == 2 ? "twice" : fmt::format("{} times", option->count()), program(), command_),
+          "give it once");
   // CLI11 complains of a missing argument before it does of an unknown option, which is more often the reason.
   const std::vector<std::string> extras = app_.remaining();
   const auto option = std::find_if(extras.begin(), extras.end(),
@@ -123,8 +131,8 @@ bool Session::parse() {
     problem = fmt::format("unknown option {}", *option);
   else if (!extras.empty())
     problem = fmt::format("unexpected argument '{}'", extras.front());
-  throw Error(ErrorCode::bad_argument, fmt::format("{}, in blackleaf {}", problem, command_),
-              fmt::format("see blackleaf {} --help", command_));
+  throw Error(ErrorCode::bad_argument, fmt::format("{}, in {} {}", problem, program(), command_),
+              fmt::format("see {} {} --help", program(), command_));
 }
 
 void Session::warn(const std::string& message) const { remarks_.push_back("warning: " + message); }
@@ -137,7 +145,7 @@ void Session::print_remarks() const {
 }
 
 void Session::print_timings() const {
-  if (!timings_) return;
+  if (!timings_ || !program_speaks) return;
   Json times;
   for (const auto& [name, seconds] : seconds_) times[name] = seconds;
   times["total"] = std::chrono::duration<double>(Clock::now() - start_).count();
@@ -147,11 +155,14 @@ void Session::print_timings() const {
 }
 
 Session::Stage::Stage(Session& session, std::string name)
-    : session_(session), name_(std::move(name)), bar_(std::make_shared<ProgressBar>(name_, !session.quiet_)) {
+    : session_(session),
+      name_(std::move(name)),
+      bar_(std::make_shared<ProgressBar>(name_, !session.quiet_ && program_speaks)) {
   check_interrupt();
   work_.threads = session.threads_.value_or(0);
-  work_.progress = [bar = bar_](double fraction) {
+  work_.progress = [bar = bar_, &machine = session.machine_](double fraction) {
     bar->show(fraction);
+    machine.look_out();
     return interrupt_signal() == 0;
   };
 }
@@ -166,7 +177,14 @@ Session::Stage::~Stage() {
     found->second += seconds;
 }
 
+void set_program(const std::string& name, bool speaks) {
+  program_name = name;
+  program_speaks = speaks;
+}
+const std::string& program() { return program_name; }
+
 void print_out(const std::string& text) {
+  if (!program_speaks) return;
   printed_something = printed_something || !text.empty();
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   throw Error(ErrorCode::io, "cannot write to standard output: " + std::generic_category().message(errno),
@@ -176,9 +194,10 @@ void print_out(const std::string& text) {
 bool printed() { return printed_something; }
 
 void print_message(std::string message) {
+  if (!program_speaks) return;
   for (char& c : message)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  fmt::print(stderr, "blackleaf: {}\n", message);
+  fmt::print(stderr, "{}: {}\n", program(), message);
 }
 void set_left_behind(const std::string& what) { left_behind_text = what; }
 const std::string& left_behind() { return left_behind_text; }

@@ -13,6 +13,7 @@
 
 #include "blackleaf/work.h"
 #include "interrupt.h"
+#include "machine.h"
 
 namespace blackleaf::cli {
 
@@ -20,8 +21,9 @@ using Json = nlohmann::ordered_json;
 
 class Session {
  public:
-  /// `arguments` are those after the subcommand's name. `example` is a command line for the end of the help text.
-  Session(const std::string& command, const std::string& description, std::vector<std::string> arguments);
+  /// `arguments` are those after the subcommand's name. The machine must outlive the session.
+  Session(const std::string& command, const std::string& description, std::vector<std::string> arguments,
+          Machine& machine);
 
   /// Where a subcommand declares its own options, before parse().
   CLI::App& app() { return app_; }
@@ -34,6 +36,8 @@ class Session {
   [[nodiscard]] bool parse();
 
   const std::string& command() const { return command_; }
+  /// Who works on the command.
+  Machine& machine() const { return machine_; }
   bool json() const { return json_; }
   bool quiet() const { return quiet_; }
 
@@ -89,6 +93,7 @@ class Session {
 
   std::string command_;
   std::vector<std::string> arguments_;
+  Machine& machine_;
   CLI::App app_;
   std::optional<int> threads_;
   std::shared_ptr<void> thread_limit_;  // TBB's, for as long as the session lives
@@ -97,6 +102,10 @@ class Session {
   mutable std::vector<std::string> remarks_;             // what warn() and note() were told
   std::vector<std::pair<std::string, double>> seconds_;  // by stage, in order of first use
 };
+
+/// The program's name in messages, and whether this process prints at all. "blackleaf" and true unless set.
+void set_program(const std::string& name, bool speaks);
+const std::string& program();
 
 /// Writes text or bytes to standard output and makes sure they arrive. Throws Error(io).
 void print_out(const std::string& text);

@@ -34,8 +34,8 @@ int run_translate(Session& session) {
     return kDone;
   }
   const Octree source = label ? solid_of(*file.labels, *label, input) : file.octree;
-  const Octree target =
-      session.stage("move", [&](const Work& work) { return translate(source, by, leaving.choice(), work); });
+  const Made target = session.stage(
+      "move", [&](const Work& work) { return session.machine().translate(source, by, leaving.choice(), work); });
   warn_if_empty(session, target);
   write_octree(session, target, output, input, options);
   return kDone;

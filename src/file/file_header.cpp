@@ -219,20 +219,26 @@ Bytes chunk_bytes(const ByteSource& source, const ChunkEntry& entry) {
   return bytes;
 }
 
-Bytes file_bytes(Content content, int depth, const Frame& frame, std::string_view metadata,
-                 const std::vector<Chunk>& chunks) {
+ChunkEntry entry_of(const Chunk& chunk) {
+  ChunkEntry entry;
+  entry.kind = chunk.kind;
+  entry.colour = chunk.colour;
+  if (chunk.kind == ChunkKind::uniform) return entry;
+  entry.stored_bytes = chunk.contents.size();
+  entry.checksum = XXH3_64bits(chunk.contents.data(), chunk.contents.size());
+  return entry;
+}
+
+Bytes header_bytes(Content content, int depth, const Frame& frame, std::string_view metadata,
+                   const std::vector<ChunkEntry>& chunks) {
   const std::size_t table = table_at(frame.unit.size(), metadata.size());
   const std::size_t checksum_at = table + chunks.size() * entry_bytes(kVersion);
-  const std::size_t header_bytes = checksum_at + kChecksumBytes;
-  std::size_t total = header_bytes;
-  for (const Chunk& chunk : chunks) total += chunk.contents.size();
-  Bytes bytes(header_bytes, 0);
-  bytes.reserve(total);
+  Bytes bytes(checksum_at + kChecksumBytes, 0);
   std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
   put_at(bytes, kVersionAt, kVersion);
   put_at(bytes, kDepthAt, static_cast<std::uint8_t>(depth));
   put_at(bytes, kContentAt, content);
-  put_at(bytes, kHeaderBytesAt, static_cast<std::uint32_t>(header_bytes));
+  put_at(bytes, kHeaderBytesAt, static_cast<std::uint32_t>(bytes.size()));
   put_at(bytes, kChunksAt, static_cast<std::uint32_t>(chunks.size()));
   for (int i = 0; i < 3; ++i) put_at(bytes, kOriginAt + 8 * static_cast<std::size_t>(i), frame.origin[i]);
   for (int i = 0; i < 9; ++i) put_at(bytes, kAxesAt + 8 * static_cast<std::size_t>(i), frame.axes(i % 3, i / 3));
@@ -241,13 +247,26 @@ Bytes file_bytes(Content content, int depth, const Frame& frame, std::string_vie
   std::memcpy(bytes.data() + kFixedBytes, frame.unit.data(), frame.unit.size());
   std::memcpy(bytes.data() + kFixedBytes + frame.unit.size(), metadata.data(), metadata.size());
   std::size_t at = table;
-  for (const auto& [kind, colour, contents] : chunks) {
-    const std::uint64_t value = kind == ChunkKind::uniform ? colour : contents.size();
-    put_at(bytes, at, static_cast<std::uint64_t>(kind) << kKindShift | value);
-    if (kind != ChunkKind::uniform) put_at(bytes, at + 8, std::uint64_t{XXH3_64bits(contents.data(), contents.size())});
+  for (const ChunkEntry& chunk : chunks) {
+    const std::uint64_t value = chunk.kind == ChunkKind::uniform ? chunk.colour : chunk.stored_bytes;
+    put_at(bytes, at, static_cast<std::uint64_t>(chunk.kind) << kKindShift | value);
+    put_at(bytes, at + 8, chunk.checksum);
     at += entry_bytes(kVersion);
   }
   put_at(bytes, checksum_at, std::uint64_t{XXH3_64bits(bytes.data(), checksum_at)});
+  return bytes;
+}
+
+Bytes file_bytes(Content content, int depth, const Frame& frame, std::string_view metadata,
+                 const std::vector<Chunk>& chunks) {
+  std::vector<ChunkEntry> entries;
+  std::size_t contents = 0;
+  for (const Chunk& chunk : chunks) {
+    entries.push_back(entry_of(chunk));
+    contents += chunk.contents.size();
+  }
+  Bytes bytes = header_bytes(content, depth, frame, metadata, entries);
+  bytes.reserve(bytes.size() + contents);
   for (const Chunk& chunk : chunks) bytes.insert(bytes.end(), chunk.contents.begin(), chunk.contents.end());
   return bytes;
 }

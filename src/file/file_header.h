@@ -41,6 +41,14 @@ struct Chunk {
   std::vector<std::uint8_t> contents;
 };
 
+/// The header of a file of the current version; of the chunks' entries kind, colour, stored bytes and checksum are
+/// written. Requires: check_arguments() has passed.
+std::vector<std::uint8_t> header_bytes(Content content, int depth, const Frame& frame, std::string_view metadata,
+                                       const std::vector<ChunkEntry>& chunks);
+
+/// The entry of a chunk that is written.
+ChunkEntry entry_of(const Chunk& chunk);
+
 /// A file of the current version. Requires: check_arguments() has passed.
 std::vector<std::uint8_t> file_bytes(Content content, int depth, const Frame& frame, std::string_view metadata,
                                      const std::vector<Chunk>& chunks);

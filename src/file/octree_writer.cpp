@@ -6,13 +6,14 @@
 #include "file/atomic_write.h"
 #include "file/file_header.h"
 #include "file/label_chunks.h"
+#include "file/solid_chunks.h"
 #include "file/solid_coder.h"
 #include "octree/parallel.h"
 
 namespace blackleaf {
-namespace {
-
 using namespace detail::format;
+
+namespace {
 
 // The chunks' nodes below this one, in curve order.
 void collect(const Node& node, int chunk_level, unsigned table, std::vector<Node>& chunks) {
@@ -25,19 +26,29 @@ void collect(const Node& node, int chunk_level, unsigned table, std::vector<Node
 
 }  // namespace
 
-std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& metadata, const Work& work) {
-  check_arguments(octree.frame(), metadata);
+std::vector<Node> detail::chunk_nodes(const Octree& octree) {
   std::vector<Node> nodes;
   // A universe of depth 1 with both colours is written as a brick.
   const Node root = octree.root();
-  collect(root.is_gray() ? detail::brick_level_root(octree) : root, std::max(2, chunk_level(octree.depth())), 0, nodes);
+  collect(root.is_gray() ? brick_level_root(octree) : root, std::max(2, chunk_level(octree.depth())), 0, nodes);
+  return nodes;
+}
+
+Chunk detail::solid_chunk(const Node& node) {
+  Chunk chunk;
+  if (node.is_gray())
+    chunk = {ChunkKind::coded, 0, encode_solid(node)};
+  else
+    chunk.colour = node.is_black() ? 1 : 0;
+  return chunk;
+}
+
+std::vector<std::uint8_t> to_bytes(const Octree& octree, const std::string& metadata, const Work& work) {
+  check_arguments(octree.frame(), metadata);
+  const std::vector<Node> nodes = detail::chunk_nodes(octree);
   std::vector<Chunk> chunks(nodes.size());
-  detail::for_each_index(nodes.size(), one_thread_for_one(work, nodes.size()), [&](std::size_t i) {
-    if (nodes[i].is_gray())
-      chunks[i] = {ChunkKind::coded, 0, detail::encode_solid(nodes[i])};
-    else
-      chunks[i].colour = nodes[i].is_black() ? 1 : 0;
-  });
+  detail::for_each_index(nodes.size(), one_thread_for_one(work, nodes.size()),
+                         [&](std::size_t i) { chunks[i] = detail::solid_chunk(nodes[i]); });
   return file_bytes(Content::solid, octree.depth(), octree.frame(), metadata, chunks);
 }
 

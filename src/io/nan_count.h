@@ -25,6 +25,12 @@ class NanCount {
           static_cast<std::uint64_t>(std::count_if(values, values + count, [](T value) { return std::isnan(value); }));
     all_ += count;
   }
+  NanCount() = default;
+  /// Counts that were made elsewhere.
+  NanCount(std::uint64_t nan, std::uint64_t all) : nan_(nan), all_(all) {}
+  std::uint64_t nan() const { return nan_; }
+  std::uint64_t all() const { return all_; }
+
   /// After the last value: throws Error(bad_input) if all were NaN, warns of some, saying what becomes of them.
   void tell(const std::filesystem::path& path, const char* fate,
             const std::function<void(const std::string&)>& warn) const {

@@ -14,16 +14,13 @@
 #include "io/nan_count.h"
 #include "io/slice_stack.h"
 #include "io/value_range.h"
+#include "io/volume_octree.h"
 #include "io/volume_shape.h"
 #include "io/volume_source.h"
 #include "octree/parallel.h"
 
 namespace blackleaf {
-namespace {
-
-using detail::ImageInformation;
-
-void check_options(const VolumeOptions& options) {
+void detail::check_options(const VolumeOptions& options) {
   const auto fail = [](const char* what, const char* remedy) { throw Error(ErrorCode::bad_argument, what, remedy); };
   if (options.label && (options.low || options.high))
     fail("both a range of values and a label are given", "give one of them");
@@ -38,19 +35,18 @@ void check_options(const VolumeOptions& options) {
                 "use 1 to 20, or 0 for the smallest that holds the volume");
 }
 
-// One volume on its way from the file to the octree.
+namespace {
+
+// One volume on its way from the source to the octree.
 class VolumeJob {
  public:
-  VolumeJob(const std::filesystem::path& path, const VolumeOptions& options, const Work& work)
-      : path_(path), options_(options), work_(work) {}
+  VolumeJob(const std::filesystem::path& path, const detail::PlacedVolume& placed, const VolumeOptions& options,
+            detail::NanCount& nan, const Work& work)
+      : path_(path), placed_(placed), options_(options), nan_(nan), work_(work) {}
 
-  Octree run() {
-    check_options(options_);
-    const auto source = detail::open_volume(path_, {options_.series, options_.spacing, options_.warn});
-    const ImageInformation& information = source->information();
-    size_ = detail::solid_size(information);
-    placed_ = detail::place_volume(path_, information, options_.depth, options_.centre);
-    return detail::with_type_of(*information.component, [&]<class T>(T) { return octree<T>(*source); });
+  Octree run(detail::VolumeSource& source) {
+    size_ = detail::solid_size(source.information());
+    return detail::with_type_of(*source.information().component, [&]<class T>(T) { return octree<T>(source); });
   }
 
  private:
@@ -83,13 +79,10 @@ class VolumeJob {
         return mask;
       });
     } else if constexpr (std::is_floating_point_v<T>) {
-      detail::NanCount nan;
-      Octree result = stream<T, T>(source, inside, [&](T* values, std::size_t count) {
-        nan.add(values, count);
+      return stream<T, T>(source, inside, [&](T* values, std::size_t count) {
+        nan_.add(values, count);
         return values;
       });
-      nan.tell(path_, "taken as outside", options_.warn);
-      return result;
     } else {
       return stream<T, T>(source, inside, [](T* values, std::size_t) { return values; });
     }
@@ -128,10 +121,11 @@ class VolumeJob {
   }
 
   const std::filesystem::path& path_;
+  const detail::PlacedVolume& placed_;
   const VolumeOptions& options_;
+  detail::NanCount& nan_;
   const Work& work_;
   std::array<std::int64_t, 3> size_{1, 1, 1};
-  detail::PlacedVolume placed_;
 };
 
 }  // namespace
@@ -143,7 +137,24 @@ bool is_volume_name(const std::filesystem::path& path) {
 bool is_volume(const std::filesystem::path& path) { return is_volume_name(path) || detail::is_stack(path); }
 
 Octree read_volume(const std::filesystem::path& path, const VolumeOptions& options, const Work& work) {
-  return VolumeJob(path, options, work).run();
+  detail::check_options(options);
+  const auto source = detail::open_volume(path, {options.series, options.spacing, options.warn});
+  const detail::ImageInformation& information = source->information();
+  const auto placed = detail::place_volume(path, information, options.depth, options.centre);
+  detail::NanCount nan;
+  Octree octree = detail::octree_of(*source, path, placed, options, nan, work);
+  detail::tell_nan(nan, *information.component, path, options.warn);
+  return octree;
+}
+
+Octree detail::octree_of(VolumeSource& source, const std::filesystem::path& path, const PlacedVolume& placed,
+                         const VolumeOptions& options, NanCount& nan, const Work& work) {
+  return VolumeJob(path, placed, options, nan, work).run(source);
+}
+
+void detail::tell_nan(const NanCount& nan, Component component, const std::filesystem::path& path,
+                      const std::function<void(const std::string&)>& warn) {
+  if (component == Component::f32 || component == Component::f64) nan.tell(path, "taken as outside", warn);
 }
 
 }  // namespace blackleaf

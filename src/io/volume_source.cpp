@@ -25,24 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The bytes of a file's values, in order.
-class Bytes {
- public:
-  Bytes() = default;
-  virtual ~Bytes() = default;
-  Bytes(const Bytes&) = delete;
-  Bytes& operator=(const Bytes&) = delete;
-  virtual void read(std::span<std::uint8_t> bytes) = 0;
-  /// After the last value: how many more bytes there are, counted up to `most`.
-  virtual std::uint64_t surplus(std::uint64_t most) = 0;
-};
-
-class RawBytes : public Bytes {
+class RawBytes : public ValueBytes {
  public:
   RawBytes(const ValueLocation& location, std::uint64_t length)
-      : file_(location.file),
-        at_(location.offset + (location.at_end ? location.available - length : 0)),
-        end_(location.offset + location.available) {}
+      : file_(location.file), at_(first_value_at(location, length)), end_(location.offset + location.available) {}
   void read(std::span<std::uint8_t> bytes) override {
     file_.read_at(at_, bytes);
     at_ += bytes.size();
@@ -54,7 +40,7 @@ class RawBytes : public Bytes {
   std::uint64_t at_, end_;
 };
 
-class PackedBytes : public Bytes {
+class PackedBytes : public ValueBytes {
  public:
   PackedBytes(const fs::path& path, const ValueLocation& location)
       : file_(path, location.file, location.offset, location.available) {
@@ -108,7 +94,8 @@ std::uint64_t slice_values(const ImageInformation& information) {
 // Values that stand one behind the other, in the file or once unpacked.
 class DirectSource : public VolumeSource {
  public:
-  DirectSource(fs::path path, const ValueLocation& location, ImageInformation information)
+  DirectSource(fs::path path, const ValueLocation& location, ImageInformation information,
+               std::unique_ptr<ValueBytes> bytes)
       : path_(std::move(path)),
         information_(std::move(information)),
         slice_(slice_values(information_)),
@@ -117,12 +104,8 @@ class DirectSource : public VolumeSource {
         stored_(location.stored.value_or(*information_.component)),
         slope_(location.slope),
         intercept_(location.intercept),
-        scaled_(location.scaled()) {
-    if (location.packing == Packing::compressed)
-      bytes_ = std::make_unique<PackedBytes>(path_, location);
-    else
-      bytes_ = std::make_unique<RawBytes>(location, slice_bytes() * static_cast<std::uint64_t>(left_));
-  }
+        scaled_(location.scaled()),
+        bytes_(std::move(bytes)) {}
 
   const ImageInformation& information() const override { return information_; }
 
@@ -154,13 +137,7 @@ class DirectSource : public VolumeSource {
     }
   }
 
-  // Padding behind the values is common; a whole slice of them more is a header that is wrong.
-  void check_end() {
-    if (bytes_->surplus(slice_bytes()) >= slice_bytes())
-      refuse(path_,
-             fmt::format("its header tells of {} slices, but there are values for more", solid_size(information_)[2]),
-             "mend the size in its header");
-  }
+  void check_end() { check_surplus(path_, solid_size(information_)[2], slice_bytes(), bytes_->surplus(slice_bytes())); }
 
   fs::path path_;
   ImageInformation information_;
@@ -170,7 +147,7 @@ class DirectSource : public VolumeSource {
   Component stored_;
   double slope_, intercept_;
   bool scaled_;
-  std::unique_ptr<Bytes> bytes_;
+  std::unique_ptr<ValueBytes> bytes_;
   std::vector<std::uint8_t> scratch_;
 };
 
@@ -209,8 +186,7 @@ class WholeSource : public VolumeSource {
 
 }  // namespace
 
-std::unique_ptr<VolumeSource> open_volume(const fs::path& path, const SourceOptions& options) {
-  if (is_stack(path)) return open_stack(path, options);
+LocatedVolume locate_volume(const fs::path& path, const SourceOptions& options) {
   if (!options.series.empty() || options.spacing)
     throw Error(ErrorCode::bad_argument,
                 fmt::format("{}: a {} is given, but it is neither DICOM nor a stack of pictures", path.string(),
@@ -227,20 +203,51 @@ std::unique_ptr<VolumeSource> open_volume(const fs::path& path, const SourceOpti
   if (!format)
     refuse(path, "has no suffix of a volume",
            "use .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, .hdr or .img, a DICOM, TIFF or PNG file, or a folder of them");
-  ValueLocation location = check_header(path, *format);
-  auto reader = std::make_unique<ImageReader>(path, *format);
-  ImageInformation information = reader->information();
-  check_shape(path, information);
-  const Component stored = location.stored.value_or(*information.component);
-  apply_units(path, *format, information.geometry, options.warn);
-  if (location.stored) information.component = location.scaled() ? Component::f64 : stored;
-  const auto size = solid_size(information);
+  LocatedVolume volume;
+  volume.format = *format;
+  volume.location = check_header(path, *format);
+  volume.information = ImageReader(path, *format).information();
+  check_shape(path, volume.information);
+  const ValueLocation& location = volume.location;
+  const Component stored = location.stored.value_or(*volume.information.component);
+  apply_units(path, *format, volume.information.geometry, options.warn);
+  if (location.stored) volume.information.component = location.scaled() ? Component::f64 : stored;
+  const auto size = solid_size(volume.information);
   const auto voxels = static_cast<std::uint64_t>(size[0] * size[1] * size[2]);  // at most 2^60
   check_believable(path, location, voxels, voxels * bytes_of(stored));
   if (location.packing == Packing::text && location.known) check_text_values(path, location, stored, voxels);
   if (location.packing == Packing::hex) check_hex_values(path, location, 2 * voxels * bytes_of(stored));
-  if (location.direct) return std::make_unique<DirectSource>(path, location, std::move(information));
-  return std::make_unique<WholeSource>(path, std::move(reader), std::move(information));
+  return volume;
+}
+
+// Padding behind the values is common; a whole slice of them more is a header that is wrong.
+void check_surplus(const fs::path& path, std::int64_t slices, std::uint64_t slice_bytes, std::uint64_t surplus) {
+  if (surplus >= slice_bytes)
+    refuse(path, fmt::format("its header tells of {} slices, but there are values for more", slices),
+           "mend the size in its header");
+}
+
+std::unique_ptr<VolumeSource> direct_source(const fs::path& path, const ValueLocation& location,
+                                            ImageInformation information, std::unique_ptr<ValueBytes> bytes) {
+  return std::make_unique<DirectSource>(path, location, std::move(information), std::move(bytes));
+}
+
+std::unique_ptr<VolumeSource> open_volume(const fs::path& path, const SourceOptions& options) {
+  if (is_stack(path)) return open_stack(path, options);
+  LocatedVolume volume = locate_volume(path, options);
+  const ValueLocation& location = volume.location;
+  if (!location.direct)
+    return std::make_unique<WholeSource>(path, std::make_unique<ImageReader>(path, volume.format),
+                                         std::move(volume.information));
+  std::unique_ptr<ValueBytes> bytes;
+  if (location.packing == Packing::compressed) {
+    bytes = std::make_unique<PackedBytes>(path, location);
+  } else {
+    const Component stored = location.stored.value_or(*volume.information.component);
+    const auto slices = static_cast<std::uint64_t>(solid_size(volume.information)[2]);
+    bytes = std::make_unique<RawBytes>(location, slice_values(volume.information) * slices * bytes_of(stored));
+  }
+  return direct_source(path, location, std::move(volume.information), std::move(bytes));
 }
 
 }  // namespace blackleaf::detail

@@ -7,6 +7,7 @@
 #include "extent.h"
 #include "lattice_move.h"
 #include "move_general.h"
+#include "move_plan.h"
 #include "move_producer.h"
 #include "octree/produce.h"
 
@@ -16,22 +17,30 @@ namespace {
 enum class Way { any, look_up };
 
 Octree moved(const Octree& octree, const Motion& motion, Leaving leaving, const Work& work, Way way) {
-  if (octree.is_empty()) return octree;
-  if (leaving == Leaving::clip && motion.translation().norm() > FixedMotion::kMaxTranslation)
-    return Octree(octree.depth(), Colour::white, octree.frame());
-  const FixedMotion fixed(motion);
-  const auto target = detail::target_universe(octree.depth(), detail::extent_of(octree, fixed), leaving);
-  const Frame frame = detail::grown_frame(octree.frame(), target);
-  if (way == Way::any)
-    if (auto lattice = detail::lattice_move(fixed, octree.depth())) {
-      for (std::size_t i = 0; i < 3; ++i) lattice->by[i] += target.offset[i];
-      return detail::moved(octree, *lattice, target.depth, frame, work);
-    }
-  return detail::produce(detail::MoveProducer(fixed.shifted(target.offset), octree, target.depth), target.depth, frame,
+  const detail::MovePlan plan = detail::plan_move(octree, motion, leaving);
+  if (plan.stays) return octree;
+  if (plan.gone) return Octree(octree.depth(), Colour::white, octree.frame());
+  if (plan.lattice && way == Way::any) return detail::moved(octree, *plan.lattice, plan.target.depth, plan.frame, work);
+  return detail::produce(detail::MoveProducer(*plan.motion, octree, plan.target.depth), plan.target.depth, plan.frame,
                          work);
 }
 
 }  // namespace
+
+detail::MovePlan detail::plan_move(const Octree& octree, const Motion& motion, Leaving leaving) {
+  MovePlan plan;
+  plan.stays = octree.is_empty();
+  plan.gone = leaving == Leaving::clip && motion.translation().norm() > FixedMotion::kMaxTranslation;
+  if (plan.stays || plan.gone) return plan;
+  const FixedMotion fixed(motion);
+  plan.target = target_universe(octree.depth(), extent_of(octree, fixed), leaving);
+  plan.frame = grown_frame(octree.frame(), plan.target);
+  plan.lattice = lattice_move(fixed, octree.depth());
+  if (plan.lattice)
+    for (std::size_t i = 0; i < 3; ++i) plan.lattice->by[i] += plan.target.offset[i];
+  plan.motion = fixed.shifted(plan.target.offset);
+  return plan;
+}
 
 Octree move(const Octree& octree, const Motion& motion, Leaving leaving, const Work& work) {
   return moved(octree, motion, leaving, work, Way::any);
