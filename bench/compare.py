@@ -17,6 +17,7 @@ import sys
 import tempfile
 
 import demands
+import mpi_figures
 import tables
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -157,12 +158,16 @@ def stored_results():
 
 def measured_results(options):
     """The stored results with the chosen figures made anew; None if they were only to be listed."""
-    if not options.program:
-        build()
-    program = options.program or PROGRAM
-    if not os.access(program, os.X_OK):
-        fail(f"{program} is not a program")
-    keys = all_keys(program)
+    if options.names and all(name.split("/")[0] == "mpi" for name in options.names):
+        keys = collections.OrderedDict((key, []) for key in stored_results())  # the other programs are not needed
+    else:
+        if not options.program:
+            build()
+        program = options.program or PROGRAM
+        if not os.access(program, os.X_OK):
+            fail(f"{program} is not a program")
+        keys = all_keys(program)
+    keys.update(mpi_figures.KEYS)
     chosen = select(keys, options.names)
     if options.list:
         for key in chosen:
@@ -170,7 +175,14 @@ def measured_results(options):
         return None
     results = {k: v for k, v in stored_results().items() if k in keys}  # without keys that are gone
     print(f"{'figure':24} {'ours':>14}  {'peer':12} {'its':>14} {'peer/ours':>10}")
+    of_ranks = [key for key in chosen if key in mpi_figures.KEYS]
+    for key, result in mpi_figures.measure(of_ranks, options.repetitions).items() if of_ranks else ():
+        results[key] = result
+        print_rows(key, result)
+        write(results, keys)
     for key in chosen:
+        if key in of_ranks:
+            continue
         results[key] = measure(program, key, keys[key], options.repetitions, options.min_time)
         print_rows(key, results[key])
         write(results, keys)

@@ -85,6 +85,10 @@ def demands():
         yield f"{key}: of a level", lambda f, k=key: f.ours(k), "at most", 4.3
     key = "move-memory/1024"
     yield f"{key}: of source and target", lambda f, k=key: 1 / f.times(k, "source+target"), "at most", 1.1
+    for work in ("build", "move"):
+        key = f"mpi/{work}/1024"
+        yield f"{key}: two ranks", lambda f, k=key: f.ours(f"{k}/n1") / f.ours(f"{k}/n2"), "at least", 1.8
+        yield f"{key}/n1: in the time of blackleaf", lambda f, k=f"{key}/n1": 1 / f.times(k, "blackleaf"), "at most", 1.1
     yield "sweep/512/t1: each move, all united", lambda f: f.times("sweep/512/t1", "moves"), "at least", 3
     for side in ("128", "256"):
         key = f"interfere/{side}"

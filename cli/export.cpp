@@ -61,7 +61,7 @@ void print_runs(const LabelMap& labels) {
 int run_export(Session& session) {
   std::string input, output;
   Label label;
-  bool crop = false;
+  bool crop = false, raw = false;
   add_octree_input(session.app(), "FILE", input);
   add_output(session.app(), output,
              "by suffix: .nrrd .nii .nii.gz .mha (0/1 or labelled volume), .stl .obj .ply (boundary faces), .runs "
@@ -71,12 +71,16 @@ int run_export(Session& session) {
   add_label(session.app(), label);
   session.add_json();
   session.set_example("blackleaf export bunny.octree -o bunny.nii.gz --crop");
+  session.app().add_flag("--raw", raw,
+                         "of .nrrd: values as they are instead of packed, as blackleaf-mpi build wants them");
   if (!session.parse()) return kDone;
 
   const Kind kind = kind_of(output);
   if (crop && kind != Kind::volume)
     throw Error(ErrorCode::bad_argument, fmt::format("--crop does not apply to '{}', which is no volume", output),
                 "leave it out");
+  if (raw && suffix_of(output) != ".nrrd")
+    throw Error(ErrorCode::bad_argument, fmt::format("--raw does not apply to '{}'", output), "name it *.nrrd");
   if (output == "-" && session.json())
     throw Error(ErrorCode::bad_argument, "-o - and --json both want standard output", "write the runs to a file");
   if (output != "-") check_output(output);
@@ -91,6 +95,9 @@ int run_export(Session& session) {
     labels = std::move(file.labels);
     octree = std::move(file.octree);
   }
+  if (raw && labels)
+    throw Error(ErrorCode::bad_argument, fmt::format("'{}' has labels, and --raw writes one solid", input),
+                "choose one with --label, or leave --raw out");
   TriangleMesh mesh;
   if (kind == Kind::mesh) mesh = session.stage("build", [&](const Work&) { return boundary_mesh(octree); });
   session.write_stage([&] {
@@ -99,7 +106,9 @@ int run_export(Session& session) {
     else if (output == "-")
       labels ? print_runs(*labels) : print_runs(octree);
     else if (kind == Kind::volume)
-      labels ? write_volume(*labels, output, crop) : write_volume(octree, output, crop);
+      labels ? write_volume(*labels, output, crop)
+      : raw  ? session.machine().write_raw_volume(octree, output, crop)
+             : write_volume(octree, output, crop);
     else
       labels ? write_runs(*labels, output) : write_runs(octree, output);
   });

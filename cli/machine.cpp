@@ -1,6 +1,7 @@
 #include "machine.h"
 
 #include "blackleaf/measures.h"
+#include "blackleaf/volume_file.h"
 #include "files.h"
 
 namespace blackleaf::cli {
@@ -28,6 +29,10 @@ Made Machine::combine(std::span<const Octree> octrees, SetOperation operation, c
 Told Machine::tell_of(const Made& made) {
   const Measures measures = measure(made.octree);
   return {measures.volume, measures.black_leaves, measures.internal_nodes, made.octree.memory_bytes()};
+}
+
+void Machine::write_raw_volume(const Octree& octree, const std::string& path, bool crop) {
+  blackleaf::write_raw_volume(octree, path, crop);
 }
 
 void Machine::save(const Made& made, const std::string& path, const std::string& metadata) {

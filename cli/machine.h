@@ -63,6 +63,8 @@ class Machine {
   /// Of the whole octree, whatever this process holds of it.
   virtual bool is_empty(const Made& made) { return made.octree.is_empty(); }
   virtual Told tell_of(const Made& made);
+  /// The raw volume of an octree that every process has.
+  virtual void write_raw_volume(const Octree& octree, const std::string& path, bool crop);
   virtual void save(const Made& made, const std::string& path, const std::string& metadata);
 };
 

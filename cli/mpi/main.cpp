@@ -2,6 +2,7 @@
 // ends all with its message, told by the first.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -19,7 +20,7 @@ struct Command {
   const char* name;
   const char* description;
   int (*run)(Session&, RanksMachine&);
-  bool alone;  // by the first rank, as blackleaf does it
+  bool alone;  // by the first rank, as blackleaf does it, unless raw values are written
 };
 
 template <int (*kRun)(Session&)>
@@ -68,10 +69,11 @@ int run(const std::vector<std::string>& arguments, mpi::Ranks& ranks) {
   }
   for (const Command& command : kCommands) {
     if (name != command.name) continue;
-    if (command.alone && !ranks.first()) return kDone;
+    const bool alone = command.alone && std::find(arguments.begin(), arguments.end(), "--raw") == arguments.end();
+    if (alone && !ranks.first()) return kDone;
     RanksMachine together(ranks);
     Machine one;
-    Machine& machine = command.alone ? one : together;
+    Machine& machine = alone ? one : together;
     Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()}, machine);
     const int code = command.run(session, together);
     session.print_remarks();

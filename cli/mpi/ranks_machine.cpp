@@ -58,8 +58,7 @@ OctreeFile RanksMachine::load(const std::string& path) {
     if (path != "-") check_octree_input(path);
     bytes = read_bytes(path);
   }
-  ranks_.broadcast(bytes);
-  return from_bytes(bytes, path == "-" ? "standard input" : path);
+  return mpi::load(ranks_, bytes, path == "-" ? "standard input" : path);
 }
 
 void RanksMachine::check_memory(std::uint64_t sources, std::uint64_t copies) const {
@@ -99,6 +98,10 @@ bool RanksMachine::is_empty(const Made& made) { return mpi::is_empty(ranks_, sha
 Told RanksMachine::tell_of(const Made& made) {
   const mpi::Told told = mpi::tell_of(ranks_, shared(made));
   return {told.volume, told.black_leaves, told.internal_nodes, told.memory_bytes};
+}
+
+void RanksMachine::write_raw_volume(const Octree& octree, const std::string& path, bool crop) {
+  mpi::write_raw_volume(ranks_, octree, path, crop);
 }
 
 void RanksMachine::save(const Made& made, const std::string& path, const std::string& metadata) {

@@ -31,6 +31,7 @@ class RanksMachine final : public Machine {
 
   bool is_empty(const Made& made) override;
   Told tell_of(const Made& made) override;
+  void write_raw_volume(const Octree& octree, const std::string& path, bool crop) override;
   void save(const Made& made, const std::string& path, const std::string& metadata) override;
 
  private:

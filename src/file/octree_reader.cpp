@@ -12,6 +12,7 @@
 #include "file/damage.h"
 #include "file/file_header.h"
 #include "file/label_chunks.h"
+#include "file/octree_share.h"
 #include "file/old_runs.h"
 #include "file/solid_coder.h"
 #include "octree/parallel.h"
@@ -45,7 +46,9 @@ void read_chunks(const Header& header, std::string_view name, const Work& work, 
 
 class SolidReader {
  public:
-  SolidReader(const detail::ByteSource& source, const Header& header) : source_(source), header_(header) {}
+  /// Reads the chunks [first, last); the others are taken for white.
+  SolidReader(const detail::ByteSource& source, const Header& header, std::size_t first, std::size_t last)
+      : source_(source), header_(header), first_(first), last_(last) {}
 
   Octree read(std::string_view name, const Work& work) {
     collect(header_.depth, 0);
@@ -74,6 +77,7 @@ class SolidReader {
     if (level == level_) {
       const std::size_t i = parts_.size();
       detail::SolidPart& part = parts_.emplace_back();
+      if (i < first_ || i >= last_) return;
       part.coded = header_.chunks[i].kind != ChunkKind::uniform;
       part.bytes = header_.chunks[i].stored_bytes;
       part.table = table;
@@ -96,6 +100,7 @@ class SolidReader {
 
   const detail::ByteSource& source_;
   const Header& header_;
+  const std::size_t first_, last_;
   const int level_ = chunk_level(header_.depth);
   std::vector<detail::SolidPart> parts_;  // one a chunk, in curve order
 };
@@ -117,15 +122,36 @@ LabelMap read_labels(const detail::ByteSource& source, std::string_view name, co
   return builder.finish(header.frame);
 }
 
-OctreeFile read(const detail::ByteSource& source, std::string_view name, const Work& work) {
+// Where a share of the chunks begins, so that all shares have about as many bytes.
+std::size_t begin_of(const Header& header, std::uint64_t number, std::uint64_t shares) {
+  std::uint64_t all = 0, before = 0;
+  for (const ChunkEntry& chunk : header.chunks) all += chunk.stored_bytes + 1;
+  std::size_t i = 0;
+  // A chunk is the share's in which its middle lies.
+  for (; i < header.chunks.size(); ++i) {
+    const std::uint64_t bytes = header.chunks[i].stored_bytes + 1;
+    if (static_cast<double>(before) + static_cast<double>(bytes) / 2 >=
+        static_cast<double>(all) * static_cast<double>(number) / static_cast<double>(shares))
+      break;
+    before += bytes;
+  }
+  return i;
+}
+
+OctreeFile read(const detail::ByteSource& source, std::string_view name, const Work& work,
+                const detail::Share& share = {}) {
   Header header = read_header(source, name);
   if (header.content == Content::labels) {
     LabelMap labels = read_labels(source, name, header, work);
     Octree octree = octree_from_labels(labels);
     return {std::move(octree), std::move(header.metadata), source.size(), std::move(labels)};
   }
-  Octree octree =
-      header.version == 1 ? read_old_runs(source, name, header) : SolidReader(source, header).read(name, work);
+  Octree octree = header.version == 1
+                      ? read_old_runs(source, name, header)
+                      : SolidReader(source, header, begin_of(header, share.number, share.shares),
+                                    share.number + 1 == share.shares ? header.chunks.size()
+                                                                     : begin_of(header, share.number + 1, share.shares))
+                            .read(name, work);
   return {std::move(octree), std::move(header.metadata), source.size(), std::nullopt};
 }
 
@@ -140,6 +166,16 @@ OctreeFile load(const std::filesystem::path& path, const Work& work) {
   while (const std::size_t got = file.read_some(buffer))
     bytes.insert(bytes.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(got));
   return from_bytes(bytes, path.string(), work);
+}
+
+OctreeFile detail::share_from_bytes(const std::vector<std::uint8_t>& bytes, const std::string& name, const Share& share,
+                                    const Work& work) {
+  return read(MemoryBytes(bytes), name, work, share);
+}
+
+bool detail::is_shareable(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+  const Header header = read_header(MemoryBytes(bytes), name);
+  return header.content == Content::solid && header.version > 1;
 }
 
 OctreeFile from_bytes(const std::vector<std::uint8_t>& bytes, const std::string& name, const Work& work) {

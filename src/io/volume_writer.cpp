@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "blackleaf/volume_file.h"
 #include "file/atomic_write.h"
 #include "io/image_io.h"
+#include "io/raw_nrrd.h"
 
 namespace blackleaf {
 namespace {
@@ -132,6 +134,17 @@ void write_volume(const Octree& octree, const std::filesystem::path& path, bool 
   write<std::uint8_t>(path, detail::Component::u8, octree.frame(), box, crop, [&](const Values<std::uint8_t>& values) {
     for_each_black_leaf(octree, [&](const Leaf& leaf) { values.fill(leaf.cube, 1); });
   });
+}
+
+void write_raw_volume(const Octree& octree, const std::filesystem::path& path, bool crop) {
+  const detail::RawNrrd volume(octree, path, crop);
+  detail::AtomicFile file(path);
+  const auto bytes = [](const std::string& text) {
+    return std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  };
+  file.write(bytes(volume.header()));
+  volume.write_slices(0, volume.slices(), [&](std::uint64_t, std::span<const std::uint8_t> part) { file.write(part); });
+  file.commit();
 }
 
 void write_volume(const LabelMap& labels, const std::filesystem::path& path, bool crop) {

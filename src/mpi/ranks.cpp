@@ -114,6 +114,18 @@ std::vector<std::uint64_t> Ranks::gather(std::uint64_t number) {
   return all;
 }
 
+std::vector<std::vector<std::uint64_t>> Ranks::gather(const std::vector<std::uint64_t>& words) {
+  const std::vector<std::uint64_t> sizes = gather(words.size());
+  std::vector<std::vector<std::uint64_t>> all(sizes.size());
+  for (std::size_t rank = 0; rank < all.size(); ++rank) all[rank].resize(sizes[rank]);
+  all[static_cast<std::size_t>(rank_)] = words;
+  meet();
+  // One after the other: most ranks have nothing, and those that have much use the whole network.
+  for (std::size_t rank = 0; rank < all.size(); ++rank)
+    broadcast_bytes(all[rank].data(), all[rank].size() * sizeof(std::uint64_t), static_cast<int>(rank));
+  return all;
+}
+
 std::vector<std::vector<std::uint64_t>> Ranks::exchange(int to, const std::vector<std::uint64_t>& words,
                                                         const std::vector<int>& from) {
   meet();

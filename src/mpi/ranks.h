@@ -69,6 +69,9 @@ class Ranks {
   /// One number from each rank, in order of rank.
   std::vector<std::uint64_t> gather(std::uint64_t number);
 
+  /// Words from each rank, in order of rank, for all.
+  std::vector<std::vector<std::uint64_t>> gather(const std::vector<std::uint64_t>& words);
+
   /// Words for another rank, and what other ranks have for this one. All ranks call it; `to` < 0: nothing to send.
   /// The ranks in `from` send to this one; returns what they sent, in that order.
   std::vector<std::vector<std::uint64_t>> exchange(int to, const std::vector<std::uint64_t>& words,

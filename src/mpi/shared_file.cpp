@@ -8,7 +8,9 @@
 
 #include "blackleaf/error.h"
 #include "file/atomic_write.h"
+#include "file/octree_share.h"
 #include "file/solid_chunks.h"
+#include "io/raw_nrrd.h"
 #include "mpi_file.h"
 #include "octree/node_arrays.h"
 #include "octree/parallel.h"
@@ -79,6 +81,28 @@ Colour add_above(std::span<const std::uint64_t> colours, int level, Counts& coun
   return Colour::gray;
 }
 
+// The first rank makes a file under a temporary name, those who have something to write do, and when all is on disk the
+// file takes its name.
+template <class Write>
+void write_together(Ranks& ranks, const std::filesystem::path& path, bool writes, const Write& write) {
+  std::optional<detail::AtomicFile> file;
+  std::vector<std::uint8_t> name;
+  if (ranks.first()) {
+    file.emplace(path);
+    const std::string text = file->temporary().string();
+    name.assign(text.begin(), text.end());
+  }
+  ranks.broadcast(name);
+  if (writes) {
+    const MpiFile shared({name.begin(), name.end()}, path, MpiFile::Mode::write);
+    write(shared);
+    shared.sync();
+  }
+  ranks.meet();
+  if (file) file->commit();
+  ranks.meet();
+}
+
 }  // namespace
 
 SharedOctree by_chunks(Ranks& ranks, const Octree& part, const Cuts& cuts) {
@@ -108,6 +132,21 @@ SharedOctree by_chunks(Ranks& ranks, const Octree& part, const Cuts& cuts) {
   return {join(pieces), held};
 }
 
+OctreeFile load(Ranks& ranks, std::vector<std::uint8_t>& bytes, const std::string& name) {
+  ranks.broadcast(bytes);
+  if (ranks.size() == 1 || !detail::is_shareable(bytes, name)) return from_bytes(bytes, name);
+  OctreeFile file = detail::share_from_bytes(
+      bytes, name, {static_cast<std::uint64_t>(ranks.rank()), static_cast<std::uint64_t>(ranks.size())});
+  std::vector<Octree> parts;
+  const bool empty = file.octree.is_empty();
+  for (auto& words : ranks.gather(empty ? std::vector<std::uint64_t>() : to_words(file.octree))) {
+    if (!words.empty()) parts.push_back(from_words(words, file.octree.depth(), file.octree.frame()));
+    std::vector<std::uint64_t>().swap(words);
+  }
+  if (!parts.empty()) file.octree = join(parts);
+  return file;
+}
+
 Told tell_of(Ranks& ranks, const SharedOctree& octree) {
   const int depth = octree.own.depth(), level = chunk_level(depth);
   const std::vector<Node> nodes = detail::chunk_nodes(octree.own);
@@ -121,7 +160,7 @@ Told tell_of(Ranks& ranks, const SharedOctree& octree) {
     }
   } else {
     for (std::uint64_t i = octree.chunks.first / chunk; i < octree.chunks.last / chunk; ++i) {
-      const Node& node = nodes.size() == 1 ? nodes[0] : nodes[i];
+      const Node& node = nodes[i];
       colours[i] = static_cast<std::uint64_t>(node.colour());
       counts.add(node);
     }
@@ -159,9 +198,8 @@ void save(Ranks& ranks, const SharedOctree& octree, const std::filesystem::path&
   const std::size_t begin = octree.chunks.first / voxels,
                     end = octree.chunks.empty() ? begin : octree.chunks.last / voxels;
   std::vector<Chunk> chunks(end - begin);
-  detail::for_each_index(chunks.size(), one_thread_for_one(work, chunks.size()), [&](std::size_t i) {
-    chunks[i] = detail::solid_chunk(nodes.size() == 1 ? nodes[0] : nodes[begin + i]);
-  });
+  detail::for_each_index(chunks.size(), one_thread_for_one(work, chunks.size()),
+                         [&](std::size_t i) { chunks[i] = detail::solid_chunk(nodes[begin + i]); });
   // Kind, colour, bytes and checksum of every chunk.
   std::vector<std::uint64_t> table(4 * chunk_count(depth), 0);
   for (std::size_t i = 0; i < chunks.size(); ++i) {
@@ -182,28 +220,29 @@ void save(Ranks& ranks, const SharedOctree& octree, const std::filesystem::path&
   }
   const std::vector<std::uint8_t> header = header_bytes(Content::solid, depth, octree.own.frame(), metadata, entries);
 
-  std::optional<detail::AtomicFile> file;
-  std::vector<std::uint8_t> name;
-  if (ranks.first()) {
-    file.emplace(path);
-    const std::string text = file->temporary().string();
-    name.assign(text.begin(), text.end());
-  }
-  ranks.broadcast(name);
-  if (ranks.first() || !chunks.empty()) {
-    const MpiFile shared({name.begin(), name.end()}, path, MpiFile::Mode::write);
-    if (ranks.first()) shared.write_at(0, header);
+  write_together(ranks, path, ranks.first() || !chunks.empty(), [&](const MpiFile& file) {
+    if (ranks.first()) file.write_at(0, header);
     std::uint64_t at = header.size();
     for (std::size_t i = 0; i < begin; ++i) at += entries[i].stored_bytes;
     for (const Chunk& chunk : chunks) {
-      shared.write_at(at, chunk.contents);
+      file.write_at(at, chunk.contents);
       at += chunk.contents.size();
     }
-    shared.sync();
-  }
-  ranks.meet();
-  if (file) file->commit();
-  ranks.meet();
+  });
+}
+
+void write_raw_volume(Ranks& ranks, const Octree& octree, const std::filesystem::path& path, bool crop) {
+  const detail::RawNrrd volume(octree, path, crop);
+  const auto share = [&](int rank) { return volume.slices() * rank / ranks.size(); };
+  const std::int64_t first = share(ranks.rank()), last = share(ranks.rank() + 1);
+  write_together(ranks, path, ranks.first() || first < last, [&](const MpiFile& file) {
+    const std::string& header = volume.header();
+    if (ranks.first()) file.write_at(0, std::span(reinterpret_cast<const std::uint8_t*>(header.data()), header.size()));
+    volume.write_slices(first, last, [&](std::uint64_t offset, std::span<const std::uint8_t> part) {
+      ranks.look_out();
+      file.write_at(offset, part);
+    });
+  });
 }
 
 }  // namespace blackleaf::mpi

@@ -1,10 +1,13 @@
 // One .octree file written by many ranks (docs/MPI.md).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "blackleaf/octree.h"
+#include "blackleaf/octree_file.h"
 #include "blackleaf/work.h"
 #include "ranks.h"
 #include "stretch.h"
@@ -22,6 +25,10 @@ struct SharedOctree {
 /// whose stretch the chunk begins, its left neighbour unless stretches are smaller than chunks. A meeting.
 SharedOctree by_chunks(Ranks& ranks, const Octree& part, const Cuts& cuts);
 
+/// The octree file that the first rank has read, for all: each rank decodes its share of the chunks, and the octrees
+/// are put together. A meeting. Throws as from_bytes.
+OctreeFile load(Ranks& ranks, std::vector<std::uint8_t>& bytes, const std::string& name);
+
 /// What is told of an octree when it has been made.
 struct Told {
   std::uint64_t volume = 0, black_leaves = 0, internal_nodes = 0, memory_bytes = 0;
@@ -36,5 +43,9 @@ bool is_empty(Ranks& ranks, const SharedOctree& octree);
 /// written under a temporary name, which the first rank changes when all is on disk. A meeting. Throws Error(io).
 void save(Ranks& ranks, const SharedOctree& octree, const std::filesystem::path& path, const std::string& metadata,
           const Work& work);
+
+/// Writes the file that write_raw_volume() writes of an octree that every rank has: each rank a share of the slices. A
+/// meeting. Throws as write_raw_volume.
+void write_raw_volume(Ranks& ranks, const Octree& octree, const std::filesystem::path& path, bool crop);
 
 }  // namespace blackleaf::mpi
