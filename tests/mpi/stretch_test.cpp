@@ -52,7 +52,7 @@ TEST(Stretch, PartsAndTheirJoin) {
   std::mt19937 random(kSeed);
   for (const int depth : {3, 5, 6, 7})
     for (int round = 0; round < 12; ++round) {
-      const Octree octree = balls(depth, random());
+      const Octree octree = balls(depth, static_cast<unsigned>(random()));
       const int processes = 1 + round % 7;
       const Cuts cuts = random_cuts(depth, 2, processes, random);
       std::vector<Octree> parts;
