@@ -10,6 +10,7 @@
 // by the meeting itself, between its reduction and its data, after a second reduction.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <mutex>
@@ -88,6 +89,7 @@ class Ranks {
   int rank_ = 0, size_ = 1;
   bool over_ = false;  // all have heard of a failure: no more meetings
   std::mutex turn_;
+  std::chrono::steady_clock::time_point next_look_{};  // under turn_
 };
 
 /// The text of an MPI error.

@@ -92,7 +92,7 @@ class Folder(unittest.TestCase):
         messages = [line for line in done.stderr.splitlines() if line.startswith("blackleaf-mpi: ")]
         self.assertEqual(len(messages), 1, done.stderr)
         self.assertIn(part, messages[0])
-        self.assertEqual(done.stdout.strip("\n- "), "" if "mpirun" not in done.stdout else done.stdout.strip("\n- "))
+        self.assertNotIn("octree", done.stdout)
         self.assertEqual(sorted(os.listdir(self.folder)), before)
         return done
 
@@ -231,7 +231,7 @@ class Faults(Folder):
     @classmethod
     def prepare(cls):
         cls.single("build", os.path.join(SOURCE, "data", "bunny.stl"), "--depth", "8", "-o", "bunny.octree")
-        cls.single("export", "bunny.octree", "--raw", "-o", "bunny.nrrd")
+        cls.ranks(1, "export", "bunny.octree", "--raw", "-o", "bunny.nrrd")
 
     def test_truncated_input(self):
         with open(self.path("bunny.nrrd"), "rb") as file:
