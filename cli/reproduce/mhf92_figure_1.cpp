@@ -24,7 +24,7 @@ constexpr double kSide = 80;  // millimetres
 // The curve as seen from `view`, far links first, each on a white band that parts it from those behind it.
 std::string curve_svg(int order, const View& view) {
   const std::vector<curve::Voxel> nodes = nodes_of(order);
-  const double side = static_cast<double>((1 << order) - 1), unit = order == 0 ? 1 : 52 / side;
+  const double side = static_cast<double>((1 << order) - 1), unit = order == 0 ? 1 : 46 / side;
   const Eigen::Vector3d middle = Eigen::Vector3d::Constant(side / 2);
   const auto point = [](const curve::Voxel& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
   const auto seen = [&](const Eigen::Vector3d& p) {
