@@ -6,7 +6,6 @@ usage: make_scenes.py [FOLDER]
     wall.nrrd, piano.nrrd      a wall with a slot, and a piano that goes through it lying down only
     cage.nrrd                  a box with a hole; for the bunny in it see scale_stl.py
     plate.nrrd, elbow.nrrd     a plate with a hole, and an elbow whose arms go through it one after the other
-    street.nrrd, car.nrrd      two walls with a lay-by, and what meets in between
 """
 import os
 import sys
@@ -59,21 +58,11 @@ def elbow():
     return Volume().set((8, 26, 30), (24, 30, 34)).set((8, 30, 30), (12, 42, 34))
 
 
-def street():
-    """Two walls with a lane of 12 between them, and a lay-by in the middle of one."""
-    return (Volume().set((0, 0, 0), (64, 26, 64)).set((0, 38, 0), (64, 64, 64)).clear((26, 12, 24), (40, 26, 38))
-            .set((0, 26, 0), (64, 38, 25)).set((0, 26, 37), (64, 38, 64)))
-
-
-def car():
-    return Volume().set((2, 28, 27), (12, 36, 35))
-
-
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else "."
-    for make in (wall, piano, cage, plate, elbow, street, car):
+    for make in (wall, piano, cage, plate, elbow):
         make().write(os.path.join(folder, make.__name__ + ".nrrd"))
-    print("wall, piano, cage, plate, elbow, street, car")
+    print("wall, piano, cage, plate, elbow")
 
 
 if __name__ == "__main__":

@@ -32,9 +32,11 @@ class Tree {
   Found grow(const std::function<bool()>& stop) {
     while (!stop()) {
       const double draw = random_.uniform();
-      if (draw < 0.2) {
+      if (draw < 0.15) {
         if (grow_to_goal()) return {true, way_to(nodes_.size() - 1)};
-      } else if (draw < 0.7) {
+      } else if (draw < 0.3) {
+        wait();
+      } else if (draw < 0.75) {
         Pose target = on_guide();
         if (random_.uniform() < 0.5) target = nudged(target);
         grow_toward(target);
@@ -68,6 +70,13 @@ class Tree {
   }
   Pose nudged(const Pose& pose) {
     const double reach = world_.radius();
+    if (random_.uniform() < 0.5) {
+      // Aside along one axis, as out of a lane.
+      Pose aside = pose;
+      const auto axis = static_cast<Eigen::Index>(3 * random_.uniform());
+      aside.translation[axis] += random_.uniform(-3 * reach, 3 * reach);
+      return aside;
+    }
     return {pose.time, pose.translation + random_.vector(-reach, reach),
             (pose.rotation * random_.small_rotation(0.5)).normalized()};
   }
@@ -76,20 +85,32 @@ class Tree {
     return {random_.uniform(0, horizon_), place - world_.about(), random_.rotation()};
   }
 
-  // From the node that can be there in time and is nearest, in length and in time, as far as `range()`.
-  void grow_toward(const Pose& target) {
+  // Somewhere in the tree, for a while.
+  void wait() {
+    const auto from = static_cast<std::size_t>(random_.uniform() * static_cast<double>(nodes_.size()));
+    const Pose& begin = nodes_[from].pose;
+    const Pose end = at_time(begin, begin.time + random_.uniform(0, horizon_ / 2));
+    if (free_between(begin, end)) nodes_.push_back({end, from});
+  }
+
+  // From the node that can be there in time and is nearest, in length and in time, as far as `range()`. Half of the
+  // times as early as can be, whatever time was drawn.
+  void grow_toward(Pose target) {
+    const bool early = random_.uniform() < 0.5;
+    if (early) target.time = std::numeric_limits<double>::infinity();
     std::optional<std::size_t> from;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (arrival(nodes_[i], target) > target.time) continue;
-      const double apart =
-          world_.distance(nodes_[i].pose, target) + 0.25 * speed_ * (target.time - nodes_[i].pose.time);
+      const double apart = world_.distance(nodes_[i].pose, target) +
+                           0.25 * speed_ * (early ? nodes_[i].pose.time : target.time - nodes_[i].pose.time);
       if (apart < least) {
         least = apart;
         from = i;
       }
     }
     if (!from) return;
+    if (early) target.time = arrival(nodes_[*from], target);
     const Pose& begin = nodes_[*from].pose;
     const double length = world_.distance(begin, target);
     const Pose end = length > range() ? between(begin, target, range() / length) : target;

@@ -41,6 +41,10 @@ double largest_arm(const Box& box, const Eigen::Vector3d& about) {
   return arm.norm();
 }
 
+Motion motion_about(const Eigen::Vector3d& about, const Pose& pose) {
+  return Motion::translation(pose.translation) * Motion::rotation(pose.rotation).about(about);
+}
+
 // Half of the angle, in [0, pi / 2].
 double half_angle(const Pose& from, const Pose& to) {
   const Eigen::Quaterniond q = from.rotation.conjugate() * to.rotation;
@@ -73,7 +77,7 @@ double World::distance(const Pose& from, const Pose& to) const {
   return (to.translation - from.translation).norm() + 2 * half_angle(from, to) * radius_;
 }
 
-Motion World::motion(const Pose& pose) const { return Path({pose}, about_).motion_at(0); }
+Motion World::motion(const Pose& pose) const { return motion_about(about_, pose); }
 
 Path World::placed_path(std::vector<Pose> poses) const {
   for (std::size_t i = 0; i < poses.size(); ++i) poses[i].time = static_cast<double>(i);
@@ -82,9 +86,8 @@ Path World::placed_path(std::vector<Pose> poses) const {
 
 bool World::is_free(const Pose& pose) const {
   ++poses_tried_;
-  const Path path = placed_path({pose});
-  if (clearance_ < 0) return clear(walled_, placed_, path, {clearance_ + kMargin, kTolerance});
-  return farther_than(clearance_ + kMargin + kTolerance, walled_, placed_, path.motion_at(0));
+  if (clearance_ < 0) return clear(walled_, placed_, placed_path({pose}), {clearance_ + kMargin, kTolerance});
+  return farther_than(clearance_ + kMargin + kTolerance, walled_, placed_, motion_about(placed_about_, pose));
 }
 
 bool World::is_free(const Pose& from, const Pose& to) const {

@@ -33,22 +33,6 @@ TEST(Traffic, WaitsOrGoesAround) {
   EXPECT_TRUE(same(*again.path, *found.path)) << "same seed, same path";
 }
 
-// Two change places in a lane that holds one, and only the lay-by lets them pass.
-TEST(Traffic, GivesWayInALayBy) {
-  const Octree lane =
-      subtract(Octree(5, Colour::black), unite(box(5, {0, 13, 13}, {32, 19, 19}), box(5, {12, 5, 13}, {20, 19, 19})));
-  const Octree first = box(5, {1, 14, 14}, {5, 18, 18}), second = box(5, {26, 14, 14}, {30, 18, 18});
-  const Plan way = plan(lane, first, {}, at(25, 0, 0));
-  ASSERT_TRUE(way.path);
-  const std::vector<Mover> movers{{first, *way.path}};
-  const Plan other = plan(lane, second, {}, at(-25, 0, 0), {}, movers);
-  expect_sound(other, lane, second, {}, at(-25, 0, 0));
-  expect_apart(other, second, movers);
-  double deepest = 0;
-  for (const Pose& pose : other.path->poses()) deepest = std::min(deepest, pose.translation.y());
-  EXPECT_LT(deepest, -3) << "it went into the lay-by";
-}
-
 TEST(Traffic, SaysWhoIsInTheWay) {
   const Octree nothing(5), object = box(5, {2, 14, 14}, {6, 18, 18}), block = box(5, {20, 12, 12}, {24, 20, 20});
   const std::vector<Mover> parked{{block, Path({at(0, 0, 0)})}};
