@@ -45,8 +45,9 @@ Placed place_in(Session& session, const Octree& environment, const std::string& 
   const auto shift = whole_shift(octree.frame(), environment.frame());
   if (!shift) {
     if (!resample_it) refuse_lattice(environment, environment_name, octree, name);
-    placed.octree = session.stage(
-        "resample", [&](const Work& work) { return resampled(octree, environment.frame(), environment.depth(), work); });
+    placed.octree = session.stage("resample", [&](const Work& work) {
+      return resampled(octree, environment.frame(), environment.depth(), work);
+    });
     placed.resampled = true;
     return placed;
   }
