@@ -60,6 +60,7 @@ void add_drawing();
 void add_curve();
 void add_file();
 void add_labels();
+void add_plan();
 // One function a peer, each in a file of its own in peers/.
 void add_scanline();
 void add_openvdb();
@@ -68,5 +69,6 @@ void add_openvdb_sets();
 void add_octomap();
 void add_fcl();
 void add_opencascade();
+void add_fcl_plan();
 
 }  // namespace blackleaf::bench

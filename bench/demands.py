@@ -121,6 +121,9 @@ def demands():
     yield "length/ball8: off 453.924338", lambda f: abs(f.ours("length/ball8") - 453.924338), "at most", 1e-6
     key = "draw-memory/1024"
     yield f"{key}: of strokes and octree", lambda f, k=key: 1 / f.times(k, "strokes+octree"), "at most", 4
+    yield "plan/narrow: RRT-Connect over FCL octrees", lambda f: f.times("plan/narrow", "fcl-octree"), "at least", 5
+    for smaller, larger in (("plan/narrow", "plan/narrow-128"), ("plan/narrow-128", "plan/narrow-256")):
+        yield f"{larger}: growth", lambda f, s=smaller, l=larger: f.growth(s, l), "at most", 1.6
     yield "svg/1024: MB/s", lambda f: f.ours("svg-bytes/1024") / f.ours("svg/1024") / MEGABYTE, "at least", 100
     yield "curve/decode: ns", lambda f: f.ours("curve/decode") / NANOSECOND, "at most", 12
     yield "curve/encode: ns", lambda f: f.ours("curve/encode") / NANOSECOND, "at most", 12

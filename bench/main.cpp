@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   add_curve();
   add_file();
   add_labels();
+  add_plan();
   add_scanline();
   add_openvdb();
   add_openvdb_translate();
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   add_octomap();
   add_fcl();
   add_opencascade();
+  add_fcl_plan();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {

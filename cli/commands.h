@@ -15,6 +15,7 @@ int run_combine(Session& session);
 int run_offset(Session& session);
 int run_collide(Session& session);
 int run_ray(Session& session);
+int run_plan(Session& session);
 int run_sweep(Session& session);
 int run_animate(Session& session);
 int run_draw(Session& session);

@@ -20,7 +20,7 @@ struct Command {
 };
 
 // In the order in which one meets them.
-constexpr std::array<Command, 15> kCommands = {{
+constexpr std::array<Command, 16> kCommands = {{
     {"build", "make the octree of a mesh, volume, point cloud, silhouettes or run stream", run_build},
     {"info", "measure an octree: volume, surface, nodes, bounding box, ...", run_info},
     {"translate", "shift an octree by whole voxels, without loss", run_translate},
@@ -29,6 +29,7 @@ constexpr std::array<Command, 15> kCommands = {{
     {"offset", "grow or shrink an octree by a ball; open or close it", run_offset},
     {"collide", "ask whether two octrees interfere, by how much, how far apart they are", run_collide},
     {"ray", "find where a ray meets an octree", run_ray},
+    {"plan", "find a way for an octree from one pose to another that touches nothing", run_plan},
     {"sweep", "find the space that an octree passes through along a path", run_sweep},
     {"animate", "make a sequence of octrees or pictures along a path", run_animate},
     {"draw", "draw an octree as lines, hidden ones removed", run_draw},

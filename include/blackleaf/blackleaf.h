@@ -1,4 +1,5 @@
-// Everything public, for programs that do not mind the compile time. File formats need the package's component io.
+// Everything public, for programs that do not mind the compile time. File formats need the package's component
+// io, plan.h the component plan.
 #pragma once
 
 #include "blackleaf/align.h"
@@ -30,6 +31,7 @@
 #include "blackleaf/pen_order.h"
 #include "blackleaf/perspective.h"
 #include "blackleaf/picture.h"
+#include "blackleaf/plan.h"
 #include "blackleaf/points.h"
 #include "blackleaf/points_file.h"
 #include "blackleaf/prepared_solid.h"

@@ -42,6 +42,7 @@ def check_command_line(document, source, folder, program, update):
     """The number of examples and that of those which print something else."""
     for name in ("bunny.stl", "beam.stl"):
         shutil.copy(os.path.join(source, "data", name), folder)
+    shutil.copy(os.path.join(source, "examples", "plan", "make_scenes.py"), folder)
     subprocess.run([sys.executable, os.path.join(source, "examples", "va88", "make_silhouettes.py"), folder], check=True,
                    stdout=subprocess.DEVNULL)
     with open(document, encoding="utf-8") as file:
