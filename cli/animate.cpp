@@ -120,8 +120,8 @@ int run_animate(Session& session) {
                   "files to write: .octree .svg .png .pdf .json; %04d becomes the frame's number, from 0001 on")
       ->required()
       ->type_name("OUT%04d");
-  CLI::Option* count = add_integer(session.app(), "--frames", frames, 1, kMostFrames,
-                                   "so many frames, evenly from the first pose to the last");
+  Option* count = add_integer(session.app(), "--frames", frames, 1, kMostFrames,
+                              "so many frames, evenly from the first pose to the last");
   add_number(session.app(), "--fps", fps, true, "so many frames a second of the path's time")->excludes(count);
   add_text(session.app(), "--view", view_text, "x,y,z", "of pictures: direction toward the viewer");
   picture.add_to(session.app());

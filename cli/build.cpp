@@ -16,7 +16,7 @@
 namespace blackleaf::cli {
 namespace {
 
-void declare(CLI::App& app, BuildOptions& o) {
+void declare(App& app, BuildOptions& o) {
   app.add_option("INPUT", o.input,
                  "mesh (STL, OBJ, PLY, OFF, glTF, 3MF, ...), volume (NRRD, NIfTI, MetaImage, DICOM, TIFF, PNG, or a "
                  "folder of slices), point cloud (PLY, PCD, XYZ, ...), silhouettes (.json or .toml naming PNG images) "
@@ -24,10 +24,10 @@ void declare(CLI::App& app, BuildOptions& o) {
       ->required()
       ->type_name("");
   add_output(app, o.output, "octree file to write, or - for standard output");
-  CLI::Option* depth = add_integer(app, "--depth", o.depth, 1, kMaxDepth,
-                                   "1 to 20: the universe has 2^N voxels a side (default: 8 for meshes and points, "
-                                   "else the smallest that holds all)");
-  CLI::Option* like =
+  Option* depth = add_integer(app, "--depth", o.depth, 1, kMaxDepth,
+                              "1 to 20: the universe has 2^N voxels a side (default: 8 for meshes and points, "
+                              "else the smallest that holds all)");
+  Option* like =
       add_text(app, "--like", o.like, "FILE.octree", "use the universe of another octree: its depth and frame");
   like->excludes(depth);
 

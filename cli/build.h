@@ -30,19 +30,19 @@ struct BuildOptions {
 
 /// One kind of input: declares the options that only it has, and builds. `like` is the octree that --like names; what
 /// was chosen is added to `facts`, which go into the file's metadata.
-void declare_mesh_options(CLI::App& app, BuildOptions& options, CLI::Option* like);
+void declare_mesh_options(App& app, BuildOptions& options, Option* like);
 Octree build_mesh(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
-void declare_volume_options(CLI::App& app, BuildOptions& options, CLI::Option* like);
+void declare_volume_options(App& app, BuildOptions& options, Option* like);
 /// The options for volumes, into the library's; notes them in `facts`.
 VolumeOptions volume_options(const Session& session, const BuildOptions& options, const std::optional<Octree>& like,
                              Json& facts);
 Octree build_volume(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
-void declare_points_options(CLI::App& app, BuildOptions& options);
+void declare_points_options(App& app, BuildOptions& options);
 Octree build_points(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 Octree build_silhouettes(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 
 /// Label maps, from volumes and run streams: --labels and --bands.
-void declare_label_options(CLI::App& app, BuildOptions& options);
+void declare_label_options(App& app, BuildOptions& options);
 LabelMap build_labels(Session& session, const BuildOptions& options, const std::optional<Octree>& like, Json& facts);
 /// The universe of --like for a run stream of this depth: throws if its depth is another. Notes it in `facts`.
 Frame frame_for_runs(const BuildOptions& options, const Octree& like, int depth, Json& facts);

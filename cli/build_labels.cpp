@@ -32,13 +32,12 @@ LabelMap from_volume(Session& session, const BuildOptions& o, const std::optiona
 
 }  // namespace
 
-void declare_label_options(CLI::App& app, BuildOptions& o) {
+void declare_label_options(App& app, BuildOptions& o) {
   const std::string group = "Options for volumes and run streams of many labels";
-  CLI::Option* labels =
-      app.add_flag("--labels", o.labels, "keep the label of every voxel: values that are whole numbers");
-  CLI::Option* bands = add_text(app, "--bands", o.bands, "LIST",
-                                "volumes: keep labels 0, 1, 2, ...: how many of the thresholds a,b,... are not above "
-                                "the value");
+  Option* labels = app.add_flag("--labels", o.labels, "keep the label of every voxel: values that are whole numbers");
+  Option* bands = add_text(app, "--bands", o.bands, "LIST",
+                           "volumes: keep labels 0, 1, 2, ...: how many of the thresholds a,b,... are not above "
+                           "the value");
   labels->group(group);
   bands->group(group)->excludes(labels);
   for (const char* other : {"--range", "--label"}) {

@@ -122,12 +122,11 @@ Value choice(const char* option, const std::string& given,
 
 }  // namespace
 
-void declare_mesh_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
+void declare_mesh_options(App& app, BuildOptions& o, Option* like) {
   const std::string meshes = "Options for meshes", both = "Options for meshes and point clouds";
-  CLI::Option* fit =
-      add_number(app, "--fit", o.fit, true,
-                 "longest side as a fraction of the universe, above 0, at most 1 (default 0.75); centred");
-  CLI::Option* size = add_number(app, "--voxel-size", o.voxel_size, true, "side of a voxel in the input's units");
+  Option* fit = add_number(app, "--fit", o.fit, true,
+                           "longest side as a fraction of the universe, above 0, at most 1 (default 0.75); centred");
+  Option* size = add_number(app, "--voxel-size", o.voxel_size, true, "side of a voxel in the input's units");
   fit->group(both)->excludes(size)->excludes(like);
   size->group(both)->excludes(like);
   add_text(app, "--rule", o.rule, "RULE",

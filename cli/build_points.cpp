@@ -17,7 +17,7 @@ constexpr double kPointsFit = 0.75;
 
 }  // namespace
 
-void declare_points_options(CLI::App& app, BuildOptions& o) {
+void declare_points_options(App& app, BuildOptions& o) {
   const std::string points = "Options for point clouds";
   add_integer(app, "--min-points", o.min_points, 1, std::numeric_limits<int>::max(),
               "a voxel is black iff it holds at least N points (default 1)")

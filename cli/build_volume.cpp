@@ -22,19 +22,19 @@ Octree placed_in(const Octree& octree, const Octree& universe, const std::string
 
 }  // namespace
 
-void declare_volume_options(CLI::App& app, BuildOptions& o, CLI::Option* like) {
+void declare_volume_options(App& app, BuildOptions& o, Option* like) {
   const std::string volumes = "Options for volumes";
-  CLI::Option* range = add_text(app, "--range", o.range, "LO:HI",
-                                "values inside, ends included; either may be empty (default: any value above 0)");
-  CLI::Option* label = app.add_option_function<std::string>(
-                              "--label", [&o](const std::string& text) { o.label = parse_number("--label", text); },
-                              "exactly this value is inside (also of run streams)")
-                           ->type_name("L");
+  Option* range = add_text(app, "--range", o.range, "LO:HI",
+                           "values inside, ends included; either may be empty (default: any value above 0)");
+  Option* label = app.add_option_function(
+                         "--label", [&o](const std::string& text) { o.label = parse_number("--label", text); },
+                         "exactly this value is inside (also of run streams)")
+                      ->type_name("L");
   range->group(volumes)->excludes(label);
   label->group(volumes);
   add_text(app, "--series", o.series, "UID", "of a folder with several DICOM series: the UID of one, or how it ends")
       ->group(volumes);
-  app.add_option_function<std::string>(
+  app.add_option_function(
          "--spacing",
          [&o](const std::string& text) {
            const Eigen::Vector3d sides = parse_vector("--spacing", text);

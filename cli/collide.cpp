@@ -158,15 +158,15 @@ int run_collide(Session& session) {
   add_octree_input(session.app(), "A", first_name);
   add_octree_input(session.app(), "B", second_name, "octree file of the same depth");
   motion_options.add_to(session.app(), "B");
-  CLI::Option* exact_flag =
+  Option* exact_flag =
       session.app().add_flag("--exact", exact, "take the moved B as tilted cubes, not as voxels; no volume");
-  CLI::Option* poses = add_text(session.app(), "--poses", poses_name, "FILE",
-                                "ask at many poses of B: one a line, x,y,z or x,y,z@x,y,z:degrees, or a path in JSON");
+  Option* poses = add_text(session.app(), "--poses", poses_name, "FILE",
+                           "ask at many poses of B: one a line, x,y,z or x,y,z@x,y,z:degrees, or a path in JSON");
   add_text(session.app(), "-o,--output", output, "OUT", "write the octree of what they share")
       ->excludes(exact_flag)
       ->excludes(poses);
   along.add_to(session.app());
-  CLI::Option* align_flag = session.app().add_flag(
+  Option* align_flag = session.app().add_flag(
       "--align", align, "place B by its frame, in the universe of A, doubled until it holds both");
   session.app()
       .add_flag("--resample", resample,

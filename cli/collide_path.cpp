@@ -51,7 +51,7 @@ void print_contact(const Session& session, const FirstContact& contact) {
 
 }  // namespace
 
-void CollidePath::add_to(CLI::App& app) {
+void CollidePath::add_to(App& app) {
   add_text(app, "--path", path_, "PATH",
            "ask for the first contact of B on this path, a JSON file; or - for standard input");
   add_number(app, "--clearance", clearance_, false,

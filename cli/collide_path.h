@@ -12,7 +12,7 @@ namespace blackleaf::cli {
 class CollidePath {
  public:
   /// Declares --path, --clearance and --tolerance.
-  void add_to(CLI::App& app);
+  void add_to(App& app);
   bool given() const { return path_.has_value(); }
   /// Throws Error(bad_argument) when the path is to come from standard input, and so is an octree; when it is beside
   /// options that ask something else; when --clearance or --tolerance are given without it.

@@ -9,7 +9,7 @@
 
 namespace blackleaf::cli {
 
-void EyeArguments::add_to(CLI::App& app) {
+void EyeArguments::add_to(App& app) {
   add_text(app, "--eye", eye_, "x,y,z", "draw in perspective, seen from this point, in voxels; instead of --view");
   add_text(app, "--target", target_, "x,y,z",
            "of --eye: the point it looks at, drawn at its true size (default: the middle of the bounding box)");

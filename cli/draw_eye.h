@@ -11,7 +11,7 @@ namespace blackleaf::cli {
 
 class EyeArguments {
  public:
-  void add_to(CLI::App& app);
+  void add_to(App& app);
   bool given() const { return eye_.has_value(); }
   /// Throws Error(bad_argument) for forms that are wrong and options that do not go together; `other_view` says which
   /// other option gives views, if one does.

@@ -30,7 +30,7 @@ std::optional<PictureFormat> format_named(std::string_view name) {
 
 }  // namespace
 
-void PageArguments::add_to(CLI::App& app) {
+void PageArguments::add_to(App& app) {
   add_text(app, "--format", format_, "FORMAT", "svg, hpgl, dxf or json, for -o -");
   add_text(app, "--size", size_, "SIZE",
            "page: A0 to A6, turned to suit the picture, or WxH in mm (default: the drawing's shape, 180 mm)");

@@ -17,7 +17,7 @@ enum class PictureFormat { svg, pdf, png, hpgl, dxf, json };
 /// --format, --size, --order, --stats and --title, as typed.
 class PageArguments {
  public:
-  void add_to(CLI::App& app);
+  void add_to(App& app);
 
   /// The format, from the suffix of the output or, for standard output, from --format. Throws Error(bad_argument).
   PictureFormat format(const std::string& output) const;

@@ -85,14 +85,14 @@ constexpr double kThin = 0.6;                     // hidden lines and hatching b
 
 }  // namespace
 
-void PenArguments::add_to(CLI::App& app) {
+void PenArguments::add_to(App& app) {
   add_number(app, "--pen-width", pen_width_, true, "width of the lines in mm (default 0.25)");
   app.add_option("--pen", pens_,
                  "pen of the first file, the second ... (of a single file with labels: of the labels in turn), or of a "
                  "label; a colour like #d55e00 or blue, perhaps with a width in mm; repeatable")
       ->type_name("[LABEL=]COLOUR[:MM]")
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->repeatable();
   add_text(app, "--hidden", hidden_, "dashed|none|only", "hidden lines: dashed, not at all (default), or nothing else");
   add_number(app, "--outline-width", outline_width_, true,
              "outlines, which have nothing close behind them, in this width in mm");

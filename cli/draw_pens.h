@@ -14,7 +14,7 @@ namespace blackleaf::cli {
 
 class PenArguments {
  public:
-  void add_to(CLI::App& app);
+  void add_to(App& app);
   /// Throws Error(bad_argument) for forms that are wrong and options that do not go together; `in_voxels` when the
   /// output has no page, `cut` when the scene is cut open.
   void check(bool in_voxels, bool cut) const;

@@ -68,7 +68,7 @@ double side_of_viewer(const View& view, std::size_t axis, std::int32_t at) {
 
 }  // namespace
 
-void SceneArguments::add_to(CLI::App& app) {
+void SceneArguments::add_to(App& app) {
   app.add_option("FILE", files_, "octree files of one universe, or - for standard input")->required()->type_name("");
   add_label(app, label_);
   app.add_flag("--align", align_, "place all files by their frames, in the universe of the first, doubled as needed");
@@ -78,7 +78,7 @@ void SceneArguments::add_to(CLI::App& app) {
          "before both; repeatable")
       ->type_name("x=N[,y=N][,z=N]")
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->repeatable();
   add_text(app, "--path", path_, "PATH", "draw the first file at steps along this path, beside the others");
   add_integer(
       app, "--steps", steps_, 1, kMostSteps,

@@ -28,7 +28,7 @@ struct NamedScene {
 
 class SceneArguments {
  public:
-  void add_to(CLI::App& app);
+  void add_to(App& app);
   /// Throws Error(bad_argument) for forms that are wrong and options that do not go together.
   void check() const;
 

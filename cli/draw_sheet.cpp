@@ -20,7 +20,7 @@ std::optional<double> voxel_side(const Frame& frame) {
 
 }  // namespace
 
-void SheetArguments::add_to(CLI::App& app) {
+void SheetArguments::add_to(App& app) {
   app.add_flag("--sheet", sheet_,
                "engineering sheet: front, top and side views and an isometric one, with a title block");
   add_text(app, "--angle", angle_, "first|third", "of --sheet: how views are placed (default third)");

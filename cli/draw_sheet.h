@@ -14,7 +14,7 @@ namespace blackleaf::cli {
 
 class SheetArguments {
  public:
-  void add_to(CLI::App& app);
+  void add_to(App& app);
   bool given() const { return sheet_; }
   /// Throws Error(bad_argument) for options that want --sheet where it is not given, and for forms that are wrong.
   /// `size` is --size as typed.

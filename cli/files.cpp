@@ -32,12 +32,11 @@ void refuse_named_pipe(const std::string& path) {
 
 }  // namespace
 
-CLI::Option* add_octree_input(CLI::App& app, const std::string& name, std::string& target,
-                              const std::string& description) {
+Option* add_octree_input(App& app, const std::string& name, std::string& target, const std::string& description) {
   return app.add_option(name, target, description)->required()->type_name("");
 }
 
-CLI::Option* add_output(CLI::App& app, std::string& target, const std::string& description) {
+Option* add_output(App& app, std::string& target, const std::string& description) {
   return app.add_option("-o,--output", target, description)->required()->type_name("OUT");
 }
 

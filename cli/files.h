@@ -15,10 +15,10 @@
 namespace blackleaf::cli {
 
 /// Declares the positional argument for an octree file.
-CLI::Option* add_octree_input(CLI::App& app, const std::string& name, std::string& target,
-                              const std::string& description = "octree file, or - for standard input");
+Option* add_octree_input(App& app, const std::string& name, std::string& target,
+                         const std::string& description = "octree file, or - for standard input");
 /// Declares the required -o.
-CLI::Option* add_output(CLI::App& app, std::string& target, const std::string& description);
+Option* add_output(App& app, std::string& target, const std::string& description);
 
 /// Throws Error(io) unless `path` names a file that is there. `what` says what it should be, e.g. "a mesh or volume".
 void check_input(const std::string& path, const std::string& what);

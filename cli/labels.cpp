@@ -43,9 +43,9 @@ std::vector<std::uint32_t> different_labels(const LabelMap& map) {
 
 }  // namespace
 
-CLI::Option* add_label(CLI::App& app, Label& target, const std::string& name, const std::string& description) {
+Option* add_label(App& app, Label& target, const std::string& name, const std::string& description) {
   return app
-      .add_option_function<std::string>(
+      .add_option_function(
           name,
           [&target, name](const std::string& text) {
             target =

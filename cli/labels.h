@@ -14,8 +14,8 @@ namespace blackleaf::cli {
 using Label = std::optional<std::uint32_t>;
 
 /// Declares --label, or what else it is called.
-CLI::Option* add_label(CLI::App& app, Label& target, const std::string& name = "--label",
-                       const std::string& description = "of a file of many labels: the solid of this one");
+Option* add_label(App& app, Label& target, const std::string& name = "--label",
+                  const std::string& description = "of a file of many labels: the solid of this one");
 
 /// The solid of a label. Throws Error(bad_argument) that says which there are when no voxel has it; `name` is the
 /// file's.

@@ -2,13 +2,13 @@
 // both; what is done in another way is asked of the machine.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 
+#include "app.h"
 #include "blackleaf/lattice.h"
 #include "blackleaf/motion.h"
 #include "blackleaf/move.h"
@@ -46,7 +46,7 @@ class Machine {
   /// True if others work on the same command.
   virtual bool is_shared() const { return false; }
   /// Declares options that only this machine has.
-  virtual void add_options(CLI::App&) {}
+  virtual void add_options(App&) {}
   /// Asked now and then during long work: throws when others have given up.
   virtual void look_out() {}
   /// Does what only one process may do; the others wait for it.

@@ -31,12 +31,12 @@ Eigen::Vector3d centre_of_rotation(const std::string& about, const Octree& octre
 
 }  // namespace
 
-void MotionOptions::add_to(CLI::App& app, const std::string& of) {
-  CLI::Option* rotate =
+void MotionOptions::add_to(App& app, const std::string& of) {
+  Option* rotate =
       app.add_option("--rotate", rotations_, "turn " + of + " about an axis, right-handed; repeatable, in order")
           ->type_name("x,y,z:degrees")
           ->allow_extra_args(false);
-  CLI::Option* translate = add_text(app, "--translate", translation_, "x,y,z", "then shift " + of + ", in voxels");
+  Option* translate = add_text(app, "--translate", translation_, "x,y,z", "then shift " + of + ", in voxels");
   add_text(app, "--about", about_, "WHERE",
            "point that rotations leave in place: corner (default), centre, centroid or x,y,z");
   add_text(app, "--matrix", matrix_, "FILE", "4x4 rigid matrix, sixteen numbers row by row, in voxels")
@@ -44,7 +44,7 @@ void MotionOptions::add_to(CLI::App& app, const std::string& of) {
       ->excludes(translate);
 }
 
-void MotionOptions::add_reflection_to(CLI::App& app, const std::string& of) {
+void MotionOptions::add_reflection_to(App& app, const std::string& of) {
   add_text(app, "--reflect", reflect_, "AXES",
            "first mirror " + of + " along x, y or z, or several like x,z, about the universe's centre or --about");
 }
@@ -130,8 +130,8 @@ Motion read_matrix(const std::string& path) {
   }
 }
 
-void LeavingOptions::add_to(CLI::App& app) {
-  CLI::Option* clip_flag = app.add_flag("--clip", clip_, "drop what leaves the universe");
+void LeavingOptions::add_to(App& app) {
+  Option* clip_flag = app.add_flag("--clip", clip_, "drop what leaves the universe");
   app.add_flag("--grow", grow_, "double the universe until it holds everything")->excludes(clip_flag);
 }
 

@@ -16,10 +16,10 @@ namespace blackleaf::cli {
 class MotionOptions {
  public:
   /// Declares the options; `of` says what moves, e.g. "the solid".
-  void add_to(CLI::App& app, const std::string& of);
+  void add_to(App& app, const std::string& of);
 
   /// Declares --reflect.
-  void add_reflection_to(CLI::App& app, const std::string& of);
+  void add_reflection_to(App& app, const std::string& of);
 
   /// True iff any of them was given.
   bool given() const { return !rotations_.empty() || translation_ || matrix_ || about_ || reflect_; }
@@ -47,7 +47,7 @@ Motion read_matrix(const std::string& path);
 class LeavingOptions {
  public:
   /// Declares the options.
-  void add_to(CLI::App& app);
+  void add_to(App& app);
   Leaving choice() const { return clip_ ? Leaving::clip : grow_ ? Leaving::grow : Leaving::error; }
   /// "clip", "grow" or "error".
   std::string name() const { return clip_ ? "clip" : grow_ ? "grow" : "error"; }

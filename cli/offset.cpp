@@ -22,7 +22,7 @@ int run_offset(Session& session) {
       ->required()
       ->type_name("");
   add_output(session.app(), output, "octree file to write, or - for standard output");
-  CLI::Option* opening_flag =
+  Option* opening_flag =
       session.app().add_flag("--open", open, "shrink by R, then grow by R: thin parts and spikes vanish");
   session.app()
       .add_flag("--close", close, "grow by R, then shrink by R: holes and gaps are filled")

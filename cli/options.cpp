@@ -170,10 +170,10 @@ PageSize parse_page_size(const std::string& option, const std::string& text) {
   return {*width, *height, false};
 }
 
-CLI::Option* add_integer(CLI::App& app, const std::string& name, std::optional<int>& target, int low, int high,
-                         const std::string& description) {
+Option* add_integer(App& app, const std::string& name, std::optional<int>& target, int low, int high,
+                    const std::string& description) {
   return app
-      .add_option_function<std::string>(
+      .add_option_function(
           name,
           [&target, name, low, high](const std::string& text) {
             target = static_cast<int>(parse_integer(name, text, low, high));
@@ -182,10 +182,10 @@ CLI::Option* add_integer(CLI::App& app, const std::string& name, std::optional<i
       ->type_name("N");
 }
 
-CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<double>& target, bool positive,
-                        const std::string& description) {
+Option* add_number(App& app, const std::string& name, std::optional<double>& target, bool positive,
+                   const std::string& description) {
   return app
-      .add_option_function<std::string>(
+      .add_option_function(
           name,
           [&target, name, positive](const std::string& text) {
             target = parse_number(name, text);
@@ -195,10 +195,10 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<do
       ->type_name("F");
 }
 
-CLI::Option* add_text(CLI::App& app, const std::string& name, std::optional<std::string>& target,
-                      const std::string& type, const std::string& description) {
+Option* add_text(App& app, const std::string& name, std::optional<std::string>& target, const std::string& type,
+                 const std::string& description) {
   return app
-      .add_option_function<std::string>(
+      .add_option_function(
           name, [&target](const std::string& text) { target = text; }, description)
       ->type_name(type);
 }

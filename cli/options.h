@@ -2,7 +2,6 @@
 // Error(bad_argument) that names the option, quotes what was typed and shows the right form.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app.h"
 #include "blackleaf/motion.h"
 
 namespace blackleaf::cli {
@@ -41,13 +41,13 @@ struct PageSize {
 PageSize parse_page_size(const std::string& option, const std::string& text);
 
 /// Adds an option that takes a whole number in [low, high].
-CLI::Option* add_integer(CLI::App& app, const std::string& name, std::optional<int>& target, int low, int high,
-                         const std::string& description);
+Option* add_integer(App& app, const std::string& name, std::optional<int>& target, int low, int high,
+                    const std::string& description);
 /// Adds an option that takes a finite number; above zero, if `positive`.
-CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<double>& target, bool positive,
-                        const std::string& description);
+Option* add_number(App& app, const std::string& name, std::optional<double>& target, bool positive,
+                   const std::string& description);
 /// Adds an option that takes any text.
-CLI::Option* add_text(CLI::App& app, const std::string& name, std::optional<std::string>& target,
-                      const std::string& type, const std::string& description);
+Option* add_text(App& app, const std::string& name, std::optional<std::string>& target, const std::string& type,
+                 const std::string& description);
 
 }  // namespace blackleaf::cli

@@ -6,7 +6,7 @@
 
 namespace blackleaf::cli {
 
-CLI::Option* add_path_input(CLI::App& app, std::string& target) {
+Option* add_path_input(App& app, std::string& target) {
   return app.add_option("--path", target, "JSON file of poses over time, or - for standard input")
       ->required()
       ->type_name("PATH");

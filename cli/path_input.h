@@ -9,7 +9,7 @@
 namespace blackleaf::cli {
 
 /// Declares the required --path.
-CLI::Option* add_path_input(CLI::App& app, std::string& target);
+Option* add_path_input(App& app, std::string& target);
 
 /// Reads the path, from standard input for "-", as stage "read". `octree_name` is the other input: both cannot be "-".
 Path read_path_input(Session& session, const std::string& name, const std::string& octree_name);

@@ -9,7 +9,7 @@
 
 namespace blackleaf::cli {
 
-void PictureOptions::add_to(CLI::App& app) {
+void PictureOptions::add_to(App& app) {
   add_text(app, "--size", size_text_, "SIZE",
            "page: A0 to A6, turned to suit the picture, or WxH in mm (default: the drawing's shape, 180 mm)");
   add_number(app, "--pen-width", pen_width_, true, "width of the lines in mm (default 0.25)");

@@ -14,7 +14,7 @@ namespace blackleaf::cli {
 class PictureOptions {
  public:
   /// Declares --size and --pen-width.
-  void add_to(CLI::App& app);
+  void add_to(App& app);
 
   /// Reads --size. Throws Error(bad_argument) for values out of range and for options that do not apply to pictures of
   /// this kind: "svg", "png", "pdf", "json", or anything else, which has no page.

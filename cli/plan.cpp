@@ -32,7 +32,7 @@ struct Request {
   Label environment_label, object_label;
 };
 
-void declare(CLI::App& app, Request& request) {
+void declare(App& app, Request& request) {
   const auto text = [&](const char* name, std::vector<std::string>& target, const char* type, const char* description) {
     return app.add_option(name, target, description)->required()->type_name(type)->allow_extra_args(false);
   };

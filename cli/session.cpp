@@ -33,42 +33,6 @@ std::uint64_t peak_memory() {
 #endif
 }
 
-// Help texts: descriptions wrapped to a column, no list of mutual exclusions (the error message tells).
-class HelpFormatter : public CLI::Formatter {
- public:
-  HelpFormatter() { column_width(kColumn); }
-
-  std::string make_option_opts(const CLI::Option* option) const override {
-    std::string text =
-        option->get_type_name().empty() || option->get_type_size() == 0 ? "" : " " + option->get_type_name();
-    if (option->get_expected_max() > 1) text += " ...";
-    return option->get_required() && !option->get_positional() ? text + " (required)" : text;
-  }
-
-  std::string make_option_desc(const CLI::Option* option) const override {
-    const std::string& words = option->get_description();
-    std::string text;
-    std::size_t width = 0;
-    for (std::size_t at = 0; at < words.size();) {
-      const std::size_t end = std::min(words.find(' ', at), words.size());
-      if (width > 0 && width + 1 + (end - at) > kTextWidth) {
-        text += '\n';
-        width = 0;
-      } else if (width > 0) {
-        text += ' ';
-        ++width;
-      }
-      text += words.substr(at, end - at);
-      width += end - at;
-      at = end + 1;
-    }
-    return text;
-  }
-
- private:
-  static constexpr std::size_t kColumn = 30, kTextWidth = 68;
-};
-
 bool printed_something = false;
 std::string left_behind_text;
 std::string program_name = "blackleaf";
@@ -81,10 +45,7 @@ Session::Session(const std::string& command, const std::string& description, std
     : command_(command),
       arguments_(std::move(arguments)),
       machine_(machine),
-      app_(description, program() + " " + command) {
-  app_.formatter(std::make_shared<HelpFormatter>());
-  app_.set_help_flag("-h,--help", "print this help and exit");
-}
+      app_(description, program() + " " + command) {}
 
 void Session::add_json() { app_.add_flag("--json", json_, "report as one JSON object"); }
 
@@ -98,41 +59,16 @@ bool Session::parse() {
                 "last line of standard error: one JSON object with seconds by stage, threads, peak memory in bytes")
       ->group(group);
   machine_.add_options(app_);
-  // CLI11 takes the arguments last first.
-  std::vector<std::string> reversed(arguments_.rbegin(), arguments_.rend());
-  std::string problem;
-  try {
-    app_.parse(std::move(reversed));
-    // TBB is told before its first task: it makes no more workers than the machine has cores unless asked beforehand,
-    // and some stages have no Work to hand it.
-    using Control = oneapi::tbb::global_control;
-    if (threads_)
-      thread_limit_ = std::make_shared<Control>(Control::max_allowed_parallelism, static_cast<std::size_t>(*threads_));
-    return true;
-  } catch (const CLI::CallForHelp&) {
+  if (!app_.parse(arguments_)) {
     print_out(app_.help());
     return false;
-  } catch (const CLI::ParseError& error) {
-    problem = error.what();
   }
-  // CLI11 has no clear words for an option that is there twice.
-  for (const CLI::Option* option : app_.get_options())
-    if (option->get_type_size() != 0 && option->get_expected_max() == 1 && option->count() > 1)
-      throw Error(
-          ErrorCode::bad_argument,
-          fmt::format("{} is given {}, in {} {}", option->get_name(),
-                      option->count() == 2 ? "twice" : fmt::format("{} times", option->count()), program(), command_),
-          "give it once");
-  // CLI11 complains of a missing argument before it does of an unknown option, which is more often the reason.
-  const std::vector<std::string> extras = app_.remaining();
-  const auto option = std::find_if(extras.begin(), extras.end(),
-                                   [](const std::string& extra) { return extra.size() > 1 && extra[0] == '-'; });
-  if (option != extras.end())
-    problem = fmt::format("unknown option {}", *option);
-  else if (!extras.empty())
-    problem = fmt::format("unexpected argument '{}'", extras.front());
-  throw Error(ErrorCode::bad_argument, fmt::format("{}, in {} {}", problem, program(), command_),
-              fmt::format("see {} {} --help", program(), command_));
+  // TBB is told before its first task: it makes no more workers than the machine has cores unless asked beforehand,
+  // and some stages have no Work to hand it.
+  using Control = oneapi::tbb::global_control;
+  if (threads_)
+    thread_limit_ = std::make_shared<Control>(Control::max_allowed_parallelism, static_cast<std::size_t>(*threads_));
+  return true;
 }
 
 void Session::warn(const std::string& message) const { remarks_.push_back("warning: " + message); }

@@ -1,7 +1,6 @@
 // Session: one run of one subcommand: its command line, the options every subcommand has, its stages and what it tells.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app.h"
 #include "blackleaf/work.h"
 #include "interrupt.h"
 #include "machine.h"
@@ -26,7 +26,7 @@ class Session {
           Machine& machine);
 
   /// Where a subcommand declares its own options, before parse().
-  CLI::App& app() { return app_; }
+  App& app() { return app_; }
   /// Declares --json.
   void add_json();
   /// The last line of the help text.
@@ -94,7 +94,7 @@ class Session {
   std::string command_;
   std::vector<std::string> arguments_;
   Machine& machine_;
-  CLI::App app_;
+  App app_;
   std::optional<int> threads_;
   std::shared_ptr<void> thread_limit_;  // TBB's, for as long as the session lives
   bool json_ = false, quiet_ = false, timings_ = false;

@@ -14,15 +14,14 @@ namespace blackleaf::cli {
 int run_shared_build(Session& session, RanksMachine& machine) {
   BuildOptions o;
   std::optional<std::string> dataset;
-  CLI::App& app = session.app();
+  App& app = session.app();
   app.add_option("INPUT", o.input, "volume: NRRD, MetaImage or NIfTI with raw values, or HDF5")
       ->required()
       ->type_name("");
   add_output(app, o.output, "octree file to write");
-  CLI::Option* depth =
-      add_integer(app, "--depth", o.depth, 1, kMaxDepth,
-                  "1 to 20: the universe has 2^N voxels a side (default: the smallest that holds all)");
-  CLI::Option* like =
+  Option* depth = add_integer(app, "--depth", o.depth, 1, kMaxDepth,
+                              "1 to 20: the universe has 2^N voxels a side (default: the smallest that holds all)");
+  Option* like =
       add_text(app, "--like", o.like, "FILE.octree", "use the universe of another octree: its depth and frame");
   like->excludes(depth);
   declare_volume_options(app, o, like);

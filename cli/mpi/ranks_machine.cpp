@@ -38,8 +38,8 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
   return value << shift;
 }
 
-void RanksMachine::add_options(CLI::App& app) {
-  app.add_option_function<std::string>(
+void RanksMachine::add_options(App& app) {
+  app.add_option_function(
          "--memory-limit", [this](const std::string& text) { memory_limit_ = parse_bytes("--memory-limit", text); },
          "bytes that a rank may hold, like 512M or 4G: refuse early what needs more (default: no limit)")
       ->type_name("BYTES")

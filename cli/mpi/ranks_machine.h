@@ -18,7 +18,7 @@ class RanksMachine final : public Machine {
 
   bool speaks() const override { return ranks_.first(); }
   bool is_shared() const override { return true; }
-  void add_options(CLI::App& app) override;
+  void add_options(App& app) override;
   void look_out() override { ranks_.look_out(); }
   void once(const std::function<void()>& job) override;
 
