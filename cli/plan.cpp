@@ -24,7 +24,7 @@ namespace {
 struct Request {
   std::string environment;
   std::vector<std::string> objects, starts, goals, outputs, resampled;
-  std::vector<std::pair<std::string, std::string>> moving;  // octree and path
+  std::vector<std::string> moving, along;  // octrees and their paths
   std::optional<std::string> planner;
   std::optional<double> seconds, clearance, preferred_clearance, speed, range;
   std::optional<int> seed, refinement;
@@ -46,8 +46,11 @@ void declare(App& app, Request& request) {
   text("--goal", request.goals, "POSE", "where it is to go, likewise");
   text("-o,--output", request.outputs, "OUT", "JSON file of the path, or - for standard output");
   app.add_option("--moving", request.moving,
-                 "octree file and path file of something that moves and is to be given way; repeatable")
-      ->type_name("FILE PATH")
+                 "octree file of something that moves and is to be given way; repeatable, with an --along each")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  app.add_option("--along", request.along, "JSON file of the path that it moves along")
+      ->type_name("PATH")
       ->allow_extra_args(false);
   add_text(app, "--planner", request.planner, "NAME", "rrt-connect (default), rrt-star, prm-star, kpiece or bit-star");
   add_number(app, "--time-limit", request.seconds, true, "most seconds to look for a way, of each object (default 60)");
@@ -106,10 +109,13 @@ void check(const Session& session, const Request& request) {
                 "give each a name of its own");
   std::vector<std::string> inputs = request.objects;
   inputs.push_back(request.environment);
-  for (const auto& [octree, path] : request.moving) {
-    inputs.push_back(octree);
-    inputs.push_back(path);
-  }
+  if (request.moving.size() != request.along.size())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("there are {} but {}", counted(request.moving.size(), "--moving"),
+                            counted(request.along.size(), "--along")),
+                "give a path for each, in the same order");
+  inputs.insert(inputs.end(), request.moving.begin(), request.moving.end());
+  inputs.insert(inputs.end(), request.along.begin(), request.along.end());
   if (std::count(inputs.begin(), inputs.end(), "-") > 1)
     throw Error(ErrorCode::bad_argument, "two inputs are - for standard input", "name files for all but one of them");
 }
@@ -152,7 +158,8 @@ Scene read_scene(Session& session, const Request& request) {
   if (resampled < request.resampled.size())
     session.warn(fmt::format("'{}' is not written: the voxels of the objects are those of the environment",
                              request.resampled[resampled]));
-  for (const auto& [octree_name, path_name] : request.moving) {
+  for (std::size_t i = 0; i < request.moving.size(); ++i) {
+    const std::string &octree_name = request.moving[i], &path_name = request.along[i];
     const Placed mover = place_in(session, scene.environment, request.environment,
                                   read_solid(session, octree_name, std::nullopt), octree_name, false);
     const Path path = session.stage("read", [&, &file = path_name](const Work&) {

@@ -113,7 +113,7 @@ TEST_F(PlanCommand, SeveralObjectsGiveWay) {
   EXPECT_TRUE(path_is_clear(Octree(5), box(5, {26, 4, 4}, {30, 8, 8}), b, 0, movers));
   // The same with the first one's file.
   const json alone = done({"plan", "--environment", "room.octree", "--object", "b.octree", "--start", "0,0,0", "--goal",
-                           "-25,0,0", "-o", "c.json", "--moving", "a.octree", "a.json", "--json"})
+                           "-25,0,0", "-o", "c.json", "--moving", "a.octree", "--along", "a.json", "--json"})
                          .json();
   EXPECT_EQ(alone["length"], report["paths"][1]["length"]);
   std::vector<std::string> fewer = both;
@@ -174,8 +174,8 @@ TEST_F(PlanCommand, Refuses) {
   refused(command({"--time-limit", "0"}), "--time-limit is '0'");
   refused(command({"--seed", "-1"}), "--seed is '-1'");
   refused(command({"--object", "board.octree"}), "there are 2 --objects but 1 --start");
-  refused(command({"--moving", "board.octree", "none.json"}), "there is no file 'none.json'");
-  refused(command({"--moving", "board.octree", "board.octree"}), "is not JSON");
+  refused(command({"--moving", "board.octree", "--along", "none.json"}), "there is no file 'none.json'");
+  refused(command({"--moving", "board.octree", "--along", "board.octree"}), "is not JSON");
   refused({"plan", "--environment", "wall.octree"}, "required");
   make_box("deep.octree", 6, {0, 0, 40}, {4, 4, 44});
   refused(with(4, "deep.octree"), "'deep.octree' does not lie in the universe of 'wall.octree'");
