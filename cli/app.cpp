@@ -75,7 +75,7 @@ Option* Option::allow_extra_args(bool allowed) {
 }
 
 Option* Option::repeatable() {
-  option_->repeatable();
+  option_->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   return this;
 }
 
