@@ -174,6 +174,7 @@ NamedScene SceneArguments::read(Session& session) const {
     octrees.erase(octrees.begin());
     octrees.insert(octrees.begin(), places.begin(), places.end());
     std::vector<NamedScene::Solid> named;
+    named.reserve(static_cast<std::size_t>(steps) + solids.size());
     for (int i = 0; i < steps; ++i)
       named.push_back({fmt::format("{} step {}", solids.front().name, i + 1), 0, std::nullopt});
     named.insert(named.end(), solids.begin() + 1, solids.end());
