@@ -108,10 +108,11 @@ void MpiFile::read_box(const FileBox& box, std::uint8_t* values) const {
   int error = MPI_SUCCESS;
   if (full_slices || (full_rows && part[2] == 1)) {
     const auto first = static_cast<std::uint64_t>((box.low[2] * box.size[1] + box.low[1]) * box.size[0]);
+    const auto place = box.offset + first * box.value_bytes;
     error = MPI_File_set_view(handle_->file, 0, MPI_BYTE, MPI_BYTE, "native", MPI_INFO_NULL);
     if (error == MPI_SUCCESS)
-      error = MPI_File_read_at(handle_->file, static_cast<MPI_Offset>(box.offset + first * box.value_bytes), values,
-                               static_cast<int>(count), value.get(), &status);
+      error = MPI_File_read_at(handle_->file, static_cast<MPI_Offset>(place), values, static_cast<int>(count),
+                               value.get(), &status);
   } else {
     const Datatype type(subarray(box, value.get()));
     error = MPI_File_set_view(handle_->file, static_cast<MPI_Offset>(box.offset), value.get(), type.get(), "native",

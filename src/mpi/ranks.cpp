@@ -62,6 +62,7 @@ Failure Ranks::fail(int code, const std::string& message) noexcept {
   try {
     const std::lock_guard lock(turn_);
     if (code != 0)
+      // Nobody waits for these: who does not hear of it learns it from agree().
       for (int other = 0; other < size_; ++other) {
         if (other == rank_) continue;
         MPI_Request request{};

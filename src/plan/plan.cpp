@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -56,15 +57,15 @@ MotionCost cost_of(const World& world, double preferred) {
   if (preferred <= 0) return {};
   return [&world, preferred](const Pose& from, const Pose& to) {
     const double length = world.distance(from, to);
-    const double parts = std::ceil(2 * length / preferred);
+    const auto parts = static_cast<std::int64_t>(std::ceil(2 * length / preferred));
     const auto density = [&](double t) {
       const auto near = world.nearest(pose_between(from, to, t), preferred);
       const double lack = near ? 1 - near->voxels / preferred : 0;
       return 1 + PlanOptions::kNearness * lack * lack;
     };
     double sum = (density(0) + density(1)) / 2;
-    for (double i = 1; i < parts; ++i) sum += density(i / parts);
-    return length * sum / std::max(parts, 1.0);
+    for (std::int64_t i = 1; i < parts; ++i) sum += density(static_cast<double>(i) / static_cast<double>(parts));
+    return length * sum / static_cast<double>(std::max<std::int64_t>(parts, 1));
   };
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace blackleaf::detail {
 namespace {
@@ -124,8 +125,9 @@ class Shortener {
   void divide(double most) {
     std::vector<Pose> finer{way_.front()};
     for (std::size_t i = 1; i < way_.size(); ++i) {
-      const double parts = std::floor(world_.distance(way_[i - 1], way_[i]) / most) + 1;
-      for (double k = 1; k < parts; ++k) finer.push_back(pose_between(way_[i - 1], way_[i], k / parts));
+      const auto parts = static_cast<std::int64_t>(world_.distance(way_[i - 1], way_[i]) / most) + 1;
+      for (std::int64_t k = 1; k < parts; ++k)
+        finer.push_back(pose_between(way_[i - 1], way_[i], static_cast<double>(k) / static_cast<double>(parts)));
       finer.push_back(way_[i]);
     }
     set_way(std::move(finer));
