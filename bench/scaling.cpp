@@ -164,8 +164,8 @@ void pieces(int depth, const Cuts& cuts, const VoxelBox& box, double& most, std:
   const int looked_at = std::min(ranks, 256);
   for (int i = 0; i < looked_at; ++i) {
     double count = 0;
-    for (const VoxelBox& part : mpi::boxes_of(
-             depth, mpi::stretch_of(cuts, static_cast<int>(std::int64_t{i} * ranks / looked_at)), box)) {
+    for (const VoxelBox& part :
+         mpi::boxes_of(depth, mpi::stretch_of(cuts, static_cast<int>(std::int64_t{i} * ranks / looked_at)), box)) {
       const std::int64_t x = part.high[0] - part.low[0], y = part.high[1] - part.low[1], z = part.high[2] - part.low[2];
       const bool rows = x == box.high[0], slices = rows && y == box.high[1];
       const std::int64_t length = slices ? x * y * std::min<std::int64_t>(z, 4) : rows ? x * y : x;

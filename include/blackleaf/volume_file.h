@@ -79,8 +79,8 @@ void write_volume(const Octree& octree, const std::filesystem::path& path, bool 
 /// bounding box is that of all labels but 0.
 void write_volume(const LabelMap& labels, const std::filesystem::path& path, bool crop = false);
 
-/// Writes the solid as write_volume() does, but as a .nrrd file of raw values, written slab by slab: volumes may be larger than memory. The file that
-/// blackleaf-mpi build reads.
+/// Writes the solid as write_volume() does, but as a .nrrd file of raw values, written slab by slab: volumes may be
+/// larger than memory. The file that blackleaf-mpi build reads.
 void write_raw_volume(const Octree& octree, const std::filesystem::path& path, bool crop = false);
 
 }  // namespace blackleaf
