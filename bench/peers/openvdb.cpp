@@ -17,6 +17,7 @@
 #include "inputs.h"
 #include "peers/openvdb_grids.h"
 #include "peers/scanline.h"
+#include "query_bench.h"
 
 namespace blackleaf::bench {
 namespace {

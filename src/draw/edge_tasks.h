@@ -8,7 +8,8 @@
 
 namespace blackleaf::detail {
 
-inline constexpr int kTaskLevels = 4;  // tasks are corner cubes this far below the root: enough for any number of cores
+// Tasks are corner cubes so far below the root, for enough of them, and so large at least, for enough to do in each.
+inline constexpr int kTaskLevels = 3, kLeastTaskLevel = 4;
 
 /// A corner cube and the nodes around it: arguments of corner_walk.
 struct EdgeTask {
@@ -43,7 +44,7 @@ inline std::vector<EdgeTask> edge_tasks(const Octree& octree) {
     around.fill(white);
     around[~octant & 7] = root;
     const Cube cube{octant & 1 ? side : 0, octant & 2 ? side : 0, octant & 4 ? side : 0, root.level()};
-    cut_tasks(around, cube, std::max(2, root.level() - kTaskLevels), tasks);
+    cut_tasks(around, cube, std::max(std::min(root.level(), kLeastTaskLevel), root.level() - kTaskLevels), tasks);
   }
   return tasks;
 }

@@ -88,12 +88,17 @@ void for_each_run(unsigned axis, const Cube& cube, std::uint64_t edges, const Si
 }
 
 /// Visitor for corner_walk. Calls sink(family index, a0, a1, b, c) for runs [a0, a1] of the chosen edges, each edge
-/// once; not for edges seen end-on.
+/// once; not for edges seen end-on. If the sink has enter(cube), it is asked before each cube whether to go in.
 template <class Sink>
 class FeatureEdges {
  public:
   FeatureEdges(const std::array<EdgeFamily, 3>& families, Sink& sink, EdgeChoice choice = EdgeChoice::candidates)
       : families_(families), sink_(sink), choice_(choice) {}
+
+  bool enter(const Cube& cube) {
+    if constexpr (requires { sink_.enter(cube); }) return sink_.enter(cube);
+    return true;
+  }
 
   void uniform(const Cube& cube, const Around& around) {
     const std::array<std::int32_t, 3> corner = {cube.x, cube.y, cube.z};

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "beam.h"
 #include "blackleaf/octree.h"
 #include "edge_family.h"
 #include "visible_set.h"
@@ -18,35 +20,37 @@ class VisibilityWalk {
   /// Requires: the family is not end_on; the octree outlives the walk.
   VisibilityWalk(const Octree& octree, const EdgeFamily& family);
 
-  /// The visible intervals of the run of edges [a0, a1] x {at_b} x {at_c}, closed, in the family's units; valid until
-  /// the next call.
-  const std::vector<Interval>& visible(std::int64_t a0, std::int64_t a1, std::int64_t at_b, std::int64_t at_c) {
-    return visible({a0 * family_.scale, a1 * family_.scale}, at_b, at_c);
-  }
-  /// The same for any part of such a run, in the family's units.
+  /// The visible intervals of `run`, a part of the edges along a at (b, c) = (at_b, at_c), closed, in the family's
+  /// units; valid until the next call.
   const std::vector<Interval>& visible(const Interval& run, std::int64_t at_b, std::int64_t at_c);
+  /// The same if none but these nodes of the tree can hide anything of the run; nearest first is fastest. (Rays in
+  /// lattice planes search the whole tree.)
+  const std::vector<Interval>& visible(const Interval& run, std::int64_t at_b, std::int64_t at_c,
+                                       std::span<const Blocker> nodes);
 
   /// What rays meet at this time tau or later does not hide. Requires: tau >= 0.
   void stop_at(std::int64_t tau) { stop_ = tau; }
 
  private:
-  enum class Kind { node, brick, byte };
+  bool search(const Blocker& blocker, std::int64_t at_b, std::int64_t at_c);
+  void search_plane(std::int64_t at_b, std::int64_t at_c);
 
-  template <Kind kKind>
+  bool search_gray(int level, std::uint64_t word, std::int64_t along, std::int64_t near_b, std::int64_t near_c);
   bool descend(int level, std::uint64_t word, std::int64_t along, std::int64_t near_b, std::int64_t near_c);
-  template <Kind kKind>
-  bool descend_child(int level, std::uint64_t word, unsigned octant, std::int64_t along, std::int64_t near_b,
-                     std::int64_t near_c);
+  bool search_brick(std::uint64_t word, std::int64_t along, std::int64_t near_b, std::int64_t near_c);
+  std::uint64_t gray_child(int below, std::uint64_t word, unsigned octant) const;
   bool descend_in_plane(const Node& below, const Node& above, std::int64_t at_b, std::int64_t along,
                         std::int64_t near_c);
   Interval hidden(std::int64_t along, std::int64_t length, std::int64_t enter, std::int64_t leave) const;
 
   const EdgeFamily& family_;
   Node root_;
-  std::array<const std::uint64_t*, kMaxDepth + 1> levels_{};
-  std::int64_t time_b_, time_c_;       // tau that a ray needs to cross one voxel along b, along c
-  unsigned near_;                      // octant label bits of the children that a ray meets first, along b and c
-  std::array<unsigned, 8> octants_{};  // children in the order of visiting: nearest first, along a upward
+  LevelWords levels_;
+  std::int64_t time_b_, time_c_;         // tau that a ray needs to cross one voxel along b, along c
+  unsigned near_;                        // octant label bits of the children that a ray meets first, along b and c
+  std::array<unsigned, 8> octants_{};    // children in the order of visiting: nearest first, along a upward
+  std::array<std::uint8_t, 16> rows_{};  // a brick's rows, likewise: the bit of the first voxel; along b, then along c
+  std::uint64_t row_mask_ = 0;           // the bits of a row whose first is bit 0
   std::int64_t stop_ = std::numeric_limits<std::int64_t>::max();
   VisibleSet visible_;
 };

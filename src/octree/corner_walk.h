@@ -18,7 +18,9 @@ namespace blackleaf::detail {
 using Around = std::array<Node, 8>;
 
 /// Calls visitor.uniform(cube, around) where all eight nodes are black or white but not all alike, and
-/// visitor.bricks(cube, around) at level 2 where some are gray (gray nodes of depth-1 trees come as bricks).
+/// visitor.bricks(cube, around) at level 2 where some are gray (gray nodes of depth-1 trees come as bricks). A visitor
+/// may have enter(cube), called on the way down for each cube that is not passed over; where it says false, nothing
+/// below is visited.
 template <class Visitor>
 void corner_walk(const Around& around, const Cube& cube, Visitor& visitor) {
   unsigned black = 0, gray = 0;
@@ -26,8 +28,11 @@ void corner_walk(const Around& around, const Cube& cube, Visitor& visitor) {
     black += around[i].is_black();
     gray += around[i].is_gray();
   }
+  if (gray == 0 && (black == 0 || black == 8)) return;
+  if constexpr (requires { visitor.enter(cube); })
+    if (!visitor.enter(cube)) return;
   if (gray == 0) {
-    if (black != 0 && black != 8) visitor.uniform(cube, around);
+    visitor.uniform(cube, around);
     return;
   }
   if (cube.level == 2) {

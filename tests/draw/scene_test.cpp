@@ -69,6 +69,34 @@ TEST(Scene, OfOneSolidIsItsDrawing) {
   }
 }
 
+// A drawing searches what the beams of its cubes meet, a scene the whole tree.
+TEST(Scene, BeamsOfLargeSolidsLoseNothing) {
+  const auto noise = [](int depth, double part) {
+    return octree_from_classifier(depth, [=](const Cube& cube) {
+      if (cube.level > 0) return Colour::gray;
+      std::mt19937 random(static_cast<unsigned>((cube.z * 1024 + cube.y) * 1024 + cube.x));
+      return std::uniform_real_distribution<double>(0, 1)(random) < part ? Colour::black : Colour::white;
+    });
+  };
+  const std::vector<Octree> solids = {ball(7, {60.3, 65, 64}, 41.0),
+                                      box(7, {3, 50, 11}, {125, 57, 120}),
+                                      noise(5, 0.5),
+                                      noise(6, 0.003),
+                                      noise(6, 0.05),
+                                      unite(ball(7, {40, 40, 40}, 33.5), complement(ball(7, {64, 64, 64}, 62.0)))};
+  SceneOptions options;
+  options.hidden = true;
+  for (const Octree& solid : solids)
+    for (const Eigen::Vector3d& d : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(12, -16, 15), Eigen::Vector3d(-3, 0, 2),
+                                     Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-1, 0.001, 0.3)}) {
+      const View view(d);
+      for (const SceneLines& lines : draw(Scene({solid}), view, options))
+        if (lines.kind == LineKind::visible) {
+          EXPECT_EQ(reference::difference(lines.strokes, draw(solid, view).strokes, 1e-9), "") << d.transpose();
+        }
+    }
+}
+
 // From a direction in which no two edges of different places fall on each other, every edge is drawn once, in full.
 TEST(Scene, VisibleAndHiddenLinesAreAllFeatureEdges) {
   const std::vector<Octree> solids = {ball(6, {30, 33, 31}, 24.0), box(6, {0, 20, 20}, {64, 40, 40})};

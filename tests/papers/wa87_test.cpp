@@ -303,6 +303,45 @@ TEST(Wa87Bounds, TheoremsHoldForMovedCubes) {
   EXPECT_EQ(closest, 1.0) << "the bound of one voxel is reached: eight voxels about the universe's centre";
 }
 
+// Theorem 3 supposes that black leaves of level m are as frequent as places of that level, 8^(n-m), and concludes that
+// one of them costs at most 10 n + 1 internal nodes on the average.
+TEST(Wa87Bounds, Theorem3FollowsFromTheorem2) {
+  for (int n = 3; n <= 20; ++n) {
+    double places = 0, internal = 0;
+    for (int m = 0; m < n; ++m) {
+      places += std::exp2(3 * (n - m));
+      internal += std::exp2(3 * (n - m)) * internal_node_bound(m, n);
+    }
+    EXPECT_LE(internal / places, 10 * n + 1) << n;
+    EXPECT_GT(internal / places, 8 * n - 4) << "not by a wide margin, n = " << n;
+  }
+}
+
+TEST(Wa87Bounds, Theorem3HoldsForLeavesOfRandomTrees) {
+  std::mt19937 random(33);
+  for (int n = 3; n <= 9; ++n) {
+    double internal = 0;
+    int moved = 0;
+    while (moved < 400) {
+      int m = 0;  // one place in eight, at any level, belongs to the next larger cubes
+      while (m < n - 2 && pick(random, 0, 7) == 0) ++m;
+      const int places = 1 << (n - m);
+      const auto corner = [&] { return pick(random, 0, places - 1) << m; };
+      const std::array<std::int32_t, 3> low = {corner(), corner(), corner()};
+      const Octree cube = blackleaf::box(n, low, {low[0] + (1 << m), low[1] + (1 << m), low[2] + (1 << m)});
+      const Vector3d middle = Vector3d::Constant(std::exp2(n - 1));
+      const Vector3d shift(uniform(random, -2, 2), uniform(random, -2, 2), uniform(random, -2, 2));
+      const Matrix3d rotation = random_rotation(random);
+      const auto target =
+          unless_it_leaves([&] { return blackleaf::move(cube, Motion(rotation, middle + shift - rotation * middle)); });
+      if (!target) continue;
+      internal += static_cast<double>(measure(*target).internal_nodes);
+      ++moved;
+    }
+    EXPECT_LE(internal / moved, 10 * n + 1) << n;
+  }
+}
+
 // Table 2's object (a) is drawn in Figure 5 without coordinates. A search over all unions of two boxes of twelve equal
 // cubes with 7 internal nodes found one that has every number of the table that can still be read: a plate of 3 x 1 x 4
 // cubes of side 2^(n-3). The peak M depends on the order in which nodes are visited; here it comes to 1 to 3 less than
