@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "blackleaf/error.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "program.h"
 
 namespace blackleaf::cli {
 namespace {
@@ -40,18 +40,11 @@ constexpr std::array<Command, 16> kCommands = {{
 }};
 
 std::string help() {
-  std::string text =
-      "blackleaf: solid octrees of real objects that move\n"
-      "Usage: blackleaf COMMAND [OPTIONS] ...\n\nCommands:\n";
-  for (const Command& command : kCommands) text += fmt::format("  {:<12}{}\n", command.name, command.description);
-  text +=
-      "\nOptions:\n"
-      "  -h,--help   print this help, or that of a command after its name, and exit\n"
-      "  --version   print the version and exit\n"
+  return help_text(
+      "blackleaf: solid octrees of real objects that move\nUsage: blackleaf COMMAND [OPTIONS] ...", kCommands,
       "\nExit status: 0 done; 1 the answer is no, or they interfere; 2 bad usage or input; 3 internal fault\n"
       "\nExample:\n"
-      "  blackleaf build bunny.stl -o bunny.octree && blackleaf draw bunny.octree --view 3,-4,2 -o bunny.svg\n";
-  return text;
+      "  blackleaf build bunny.stl -o bunny.octree && blackleaf draw bunny.octree --view 3,-4,2 -o bunny.svg\n");
 }
 
 int run(const std::vector<std::string>& arguments) {
@@ -59,28 +52,14 @@ int run(const std::vector<std::string>& arguments) {
     fmt::print(stderr, "{}", help());
     return kBadInput;
   }
-  const std::string& name = arguments.front();
-  if (name == "--help" || name == "-h") {
-    print_out(help());
-    return kDone;
-  }
-  if (name == "--version") {
-    print_out(std::string("blackleaf " BLACKLEAF_VERSION "\n"));
-    return kDone;
-  }
-  for (const Command& command : kCommands) {
-    if (name != command.name) continue;
-    Machine machine;
-    Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()}, machine);
-    const int code = command.run(session);
-    session.print_remarks();
-    session.print_timings();
-    return code;
-  }
-  throw Error(ErrorCode::bad_argument,
-              name.starts_with('-') ? fmt::format("unknown option {} before a command", name)
-                                    : fmt::format("unknown command '{}'", name),
-              "see blackleaf --help");
+  if (answered(arguments.front(), "blackleaf", help())) return kDone;
+  const Command& command = command_named(arguments.front(), kCommands, "blackleaf");
+  Machine machine;
+  Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()}, machine);
+  const int code = command.run(session);
+  session.print_remarks();
+  session.print_timings();
+  return code;
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "blackleaf/error.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "program.h"
 #include "ranks_machine.h"
 
 namespace blackleaf::cli {
@@ -38,19 +38,13 @@ constexpr std::array<Command, 6> kCommands = {{
 }};
 
 std::string help() {
-  std::string text =
-      "blackleaf-mpi: solid octrees beyond one machine\n"
-      "Usage: mpirun -n P blackleaf-mpi COMMAND [OPTIONS] ...\n\nCommands:\n";
-  for (const Command& command : kCommands) text += fmt::format("  {:<12}{}\n", command.name, command.description);
-  text +=
-      "\nOptions:\n"
-      "  -h,--help   print this help, or that of a command after its name, and exit\n"
-      "  --version   print the version and exit\n"
+  return help_text(
+      "blackleaf-mpi: solid octrees beyond one machine\nUsage: mpirun -n P blackleaf-mpi COMMAND [OPTIONS] ...",
+      kCommands,
       "\nFiles are those that blackleaf writes, byte for byte, whatever P is.\n"
       "\nExit status: 0 done; 2 bad usage or input; 3 internal fault\n"
       "\nExample:\n"
-      "  mpirun -n 8 blackleaf-mpi build scan.nhdr -o scan.octree --range 1200:\n";
-  return text;
+      "  mpirun -n 8 blackleaf-mpi build scan.nhdr -o scan.octree --range 1200:\n");
 }
 
 int run(const std::vector<std::string>& arguments, mpi::Ranks& ranks) {
@@ -58,32 +52,18 @@ int run(const std::vector<std::string>& arguments, mpi::Ranks& ranks) {
     if (ranks.first()) fmt::print(stderr, "{}", help());
     return kBadInput;
   }
-  const std::string& name = arguments.front();
-  if (name == "--help" || name == "-h") {
-    print_out(help());
-    return kDone;
-  }
-  if (name == "--version") {
-    print_out(std::string("blackleaf-mpi " BLACKLEAF_VERSION "\n"));
-    return kDone;
-  }
-  for (const Command& command : kCommands) {
-    if (name != command.name) continue;
-    const bool alone = command.alone && std::find(arguments.begin(), arguments.end(), "--raw") == arguments.end();
-    if (alone && !ranks.first()) return kDone;
-    RanksMachine together(ranks);
-    Machine one;
-    Machine& machine = alone ? one : together;
-    Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()}, machine);
-    const int code = command.run(session, together);
-    session.print_remarks();
-    session.print_timings();
-    return code;
-  }
-  throw Error(ErrorCode::bad_argument,
-              name.starts_with('-') ? fmt::format("unknown option {} before a command", name)
-                                    : fmt::format("unknown command '{}'", name),
-              "see blackleaf-mpi --help");
+  if (answered(arguments.front(), "blackleaf-mpi", help())) return kDone;
+  const Command& command = command_named(arguments.front(), kCommands, "blackleaf-mpi");
+  const bool alone = command.alone && std::find(arguments.begin(), arguments.end(), "--raw") == arguments.end();
+  if (alone && !ranks.first()) return kDone;
+  RanksMachine together(ranks);
+  Machine one;
+  Machine& machine = alone ? one : together;
+  Session session(command.name, command.description, {arguments.begin() + 1, arguments.end()}, machine);
+  const int code = command.run(session, together);
+  session.print_remarks();
+  session.print_timings();
+  return code;
 }
 
 }  // namespace

@@ -118,13 +118,14 @@ class Octree {
   Node root() const;
   bool is_empty() const { return root().is_white(); }
 
-  /// True iff voxel (x,y,z) is black; voxels outside the universe are white. O(depth).
+  /// True iff voxel (x,y,z) is black; voxels outside the universe are white. O(depth). The first call for a tree of
+  /// depth 6 or more makes a directory of 32 kB (some ten microseconds), shared by all copies of the octree.
   bool contains(std::int64_t x, std::int64_t y, std::int64_t z) const;
 
   /// The words of one level in storage order; empty above the root and for levels without gray nodes.
   /// Requires: 0 <= level <= 20.
   std::span<const std::uint64_t> words(int level) const;
-  /// Bytes held by the tree: its words and the fixed part.
+  /// Bytes held by the tree: its words and the fixed part; without the directory that contains() makes.
   std::size_t memory_bytes() const;
 
   /// Equality of solids: same depth and same words. Frames are not compared. O(words).

@@ -34,15 +34,24 @@ Node Octree::root() const {
   return Node(s.tree->levels.data(), *s.tree->levels[level], s.depth, Colour::gray);
 }
 
-// The descent of Node::child without a cursor: colours are told apart once, at the end.
+// The descent of Node::child without a cursor: from the directory, and colours are told apart once, at the end.
 bool Octree::contains(std::int64_t x, std::int64_t y, std::int64_t z) const {
+  using detail::Directory;
   const Storage& s = *storage_;
   if ((static_cast<std::uint64_t>(x) | static_cast<std::uint64_t>(y) | static_cast<std::uint64_t>(z)) >> s.depth != 0)
     return false;
   if (s.root != Colour::gray) return s.root == Colour::black;
   const auto& levels = s.tree->levels;
   auto level = static_cast<std::size_t>(s.depth);
-  std::uint64_t word = *levels[level];
+  std::uint64_t word = 0;
+  if (s.depth < Directory::kLeastDepth) {
+    word = *levels[level];
+  } else {
+    level -= Directory::kLevels;
+    const std::uint64_t* nodes = s.tree->directory.nodes(levels.data(), s.depth);
+    word = nodes[x >> level | y >> level << Directory::kLevels | z >> level << 2 * Directory::kLevels];
+    if (word == Directory::kWhite || word == Directory::kBlack) return word == Directory::kBlack;
+  }
   for (; level > 2; --level) {
     const std::size_t below = level - 1;
     const auto octant = static_cast<unsigned>((x >> below & 1) | (y >> below & 1) << 1 | (z >> below & 1) << 2);

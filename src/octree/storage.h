@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "blackleaf/octree.h"
+#include "directory.h"
 #include "word_array.h"
 
 namespace blackleaf {
@@ -16,6 +17,7 @@ namespace detail {
 struct Words {
   std::array<WordArray, kMaxDepth + 1> of_level;
   std::array<const std::uint64_t*, kMaxDepth + 1> levels{};  // first word of each level
+  Directory directory;                                       // for looking up voxels
 };
 
 }  // namespace detail

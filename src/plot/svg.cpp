@@ -29,11 +29,11 @@ void put_header(TextBuffer& out, const Picture& picture) {
   out.put_decimal(picture.height_mm);
   out.put("\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\">\n");
   if (!picture.title.empty()) out.put(fmt::format("<title>{}</title>\n", escaped(picture.title)));
-  out.put("<metadata>");
+  out.put("<metadata><rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">");
   for (const PlacedView& placed : picture.views) {
     const auto& d = placed.view.direction();
     const Eigen::Vector3d &u = placed.view.right(), &v = placed.view.up();
-    out.put("<drawing xmlns=\"urn:blackleaf\"");
+    out.put("<rdf:Description><drawing xmlns=\"urn:blackleaf\"");
     if (!placed.name.empty()) out.put(fmt::format(" name=\"{}\"", escaped(placed.name)));
     if (!picture.source.empty()) out.put(fmt::format(" source=\"{}\"", escaped(picture.source)));
     // Adding 0 turns -0 into 0.
@@ -44,11 +44,11 @@ void put_header(TextBuffer& out, const Picture& picture) {
     }
     out.put(
         fmt::format(" view=\"{} {} {}\" right=\"{} {} {}\" up=\"{} {} {}\" millimetres-per-voxel=\"{}\" "
-                    "origin=\"{} {}\"/>",
+                    "origin=\"{} {}\"/></rdf:Description>",
                     d[0], d[1], d[2], u[0] + 0, u[1] + 0, u[2] + 0, v[0] + 0, v[1] + 0, v[2] + 0, placed.mm_per_voxel,
                     placed.x_mm + 0, picture.height_mm - placed.y_mm + 0));
   }
-  out.put("</metadata>\n");
+  out.put("</rdf:RDF></metadata>\n");
 }
 
 void put_layer(TextBuffer& out, const Picture& picture, std::size_t index) {
