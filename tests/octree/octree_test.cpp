@@ -1,8 +1,10 @@
 #include "blackleaf/octree.h"
+#include "blackleaf/implicit.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "blackleaf/error.h"
 #include "blackleaf/leaves.h"
@@ -118,6 +120,29 @@ TEST(Octree, ContainsAgreesWithTheGridAndWithTheCursorInsideAndOutside) {
       EXPECT_FALSE(octree.contains(0, at, 0));
       EXPECT_FALSE(octree.contains(0, 0, at));
     }
+  }
+}
+
+// Trees of depth 6 and more are looked up from a directory, which several threads may make at once.
+TEST(Octree, ContainsBeginsAtTheDirectoryOfLargerTrees) {
+  for (int depth = 5; depth <= 9; ++depth) {
+    SCOPED_TRACE(depth);
+    const double side = 1 << depth;
+    const Octree octree = ball(depth, {0.45 * side, 0.5 * side, 0.6 * side}, 0.39 * side);
+    const auto check = [&](unsigned seed) {
+      std::mt19937 random(seed);
+      std::uniform_int_distribution<int> coordinate(0, octree.side() - 1);
+      for (int i = 0; i < 20000; ++i) {
+        const int x = coordinate(random), y = coordinate(random), z = coordinate(random);
+        Node node = octree.root();
+        for (int bit = depth - 1; bit >= 0; --bit)
+          node = node.child((x >> bit & 1) + 2 * (y >> bit & 1) + 4 * (z >> bit & 1));
+        ASSERT_EQ(octree.contains(x, y, z), node.is_black());
+      }
+    };
+    std::thread other([&] { check(1); });
+    check(2);
+    other.join();
   }
 }
 
