@@ -205,14 +205,13 @@ class Walk {
       const auto below = static_cast<std::size_t>(level - 1);
       const auto octant =
           static_cast<unsigned>((voxel[0] >> below & 1) | (voxel[1] >> below & 1) << 1 | (voxel[2] >> below & 1) << 2);
-      const std::uint64_t grays = word >> 8 & 0xFF;
-      if ((grays >> octant & 1) == 0) {
+      if ((word >> (8 + octant) & 1) == 0) {
         black_ = (word >> octant & 1) != 0;
         level_ = level - 1;
         known_ = level;
         return;
       }
-      word = levels_[below][(word >> 16) + static_cast<unsigned>(std::popcount(grays & ((1U << octant) - 1)))];
+      word = levels_[below][detail::gray_child_index(word, octant)];
       path_[below] = word;
     }
     const auto low = [](std::int64_t coordinate) { return static_cast<unsigned>(coordinate & 3); };

@@ -33,8 +33,8 @@ inline void cut_tasks(const Around& around, const Cube& cube, int level, std::ve
   }
 }
 
-/// Corner cubes that together cover every place where black and white meet: kTaskLevels below the root, or larger ones
-/// that need no cutting.
+/// Corner cubes that together cover every place where black and white meet: kTaskLevels below the root but of level
+/// kLeastTaskLevel at least, or larger ones that need no cutting.
 inline std::vector<EdgeTask> edge_tasks(const Octree& octree) {
   const Node root = brick_level_root(octree), white = Node::uniform(root.level(), Colour::white);
   const std::int32_t side = std::int32_t{1} << root.level();

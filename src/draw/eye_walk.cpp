@@ -146,9 +146,7 @@ bool EyeWalk::descend_child(int level, std::uint64_t word, unsigned octant, std:
   if constexpr (kKind == Kind::brick) {
     return descend<Kind::byte>(level, word >> (8 * octant) & 0xFF, along, slab_b, slab_c);
   } else {
-    const std::uint64_t gray_before = word >> 8 & 0xFF & ((1u << octant) - 1);
-    const std::uint64_t index = (word >> 16) + static_cast<unsigned>(std::popcount(gray_before));
-    const std::uint64_t child = levels_[static_cast<std::size_t>(level)][index];
+    const std::uint64_t child = levels_[static_cast<std::size_t>(level)][gray_child_index(word, octant)];
     return level == 2 ? descend<Kind::brick>(level, child, along, slab_b, slab_c)
                       : descend<Kind::node>(level, child, along, slab_b, slab_c);
   }

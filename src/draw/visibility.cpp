@@ -82,11 +82,6 @@ void VisibilityWalk::search_plane(std::int64_t at_b, std::int64_t at_c) {
   if (visible_.meets(hides.low, hides.high)) visible_.subtract(hides.low, hides.high);
 }
 
-inline std::uint64_t VisibilityWalk::gray_child(int below, std::uint64_t word, unsigned octant) const {
-  const std::uint64_t gray_before = word >> 8 & 0xFF & ((1u << octant) - 1);
-  return levels_[static_cast<std::size_t>(below)][(word >> 16) + static_cast<unsigned>(std::popcount(gray_before))];
-}
-
 inline Interval VisibilityWalk::hidden(std::int64_t along, std::int64_t length, std::int64_t enter,
                                        std::int64_t leave) const {
   const std::int64_t at_enter = enter * family_.d_a, at_leave = leave * family_.d_a;
@@ -113,7 +108,8 @@ bool VisibilityWalk::descend(int level, std::uint64_t word, std::int64_t along, 
       const Interval hides = hidden(child_along, length, enter, leave);
       if (!visible_.meets(hides.low, hides.high)) continue;
       if (black ? visible_.subtract(hides.low, hides.high)
-                : search_gray(below, gray_child(below, word, octant), child_along, enter_b, enter_c))
+                : search_gray(below, levels_[static_cast<std::size_t>(below)][gray_child_index(word, octant)],
+                              child_along, enter_b, enter_c))
         return true;
     }
   }

@@ -38,7 +38,6 @@ class VisibilityWalk {
   bool search_gray(int level, std::uint64_t word, std::int64_t along, std::int64_t near_b, std::int64_t near_c);
   bool descend(int level, std::uint64_t word, std::int64_t along, std::int64_t near_b, std::int64_t near_c);
   bool search_brick(std::uint64_t word, std::int64_t along, std::int64_t near_b, std::int64_t near_c);
-  std::uint64_t gray_child(int below, std::uint64_t word, unsigned octant) const;
   bool descend_in_plane(const Node& below, const Node& above, std::int64_t at_b, std::int64_t along,
                         std::int64_t near_c);
   Interval hidden(std::int64_t along, std::int64_t length, std::int64_t enter, std::int64_t leave) const;

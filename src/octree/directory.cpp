@@ -1,13 +1,11 @@
 #include "directory.h"
 
-#include <bit>
-
 namespace blackleaf::detail {
 namespace {
 
-// Enters a node of the given level, or its colour, at its place.
-void enter(const std::uint64_t* const* levels, int level, int least, std::uint64_t word, std::size_t x, std::size_t y,
-           std::size_t z, std::uint64_t* nodes) {
+// Puts a node of the given level, or its colour, at all its places; x, y, z count nodes of its level.
+void put(const std::uint64_t* const* levels, int level, int least, std::uint64_t word, std::size_t x, std::size_t y,
+         std::size_t z, std::uint64_t* nodes) {
   const bool plain = word == Directory::kWhite || word == Directory::kBlack;
   if (level == least) {
     nodes[x | y << Directory::kLevels | z << 2 * Directory::kLevels] = word;
@@ -20,8 +18,7 @@ void enter(const std::uint64_t* const* levels, int level, int least, std::uint64
       child = word >> octant & 1 ? Directory::kBlack : Directory::kWhite;
       if (word >> (8 + octant) & 1) child = levels[level - 1][next++];
     }
-    enter(levels, level - 1, least, child, 2 * x + (octant & 1), 2 * y + (octant >> 1 & 1), 2 * z + (octant >> 2),
-          nodes);
+    put(levels, level - 1, least, child, 2 * x + (octant & 1), 2 * y + (octant >> 1 & 1), 2 * z + (octant >> 2), nodes);
   }
 }
 
@@ -29,7 +26,7 @@ void enter(const std::uint64_t* const* levels, int level, int least, std::uint64
 
 const Directory::Nodes& Directory::made(const std::uint64_t* const* levels, int depth) const {
   auto mine = std::make_unique<Nodes>();
-  enter(levels, depth, depth - kLevels, *levels[depth], 0, 0, 0, mine->data());
+  put(levels, depth, depth - kLevels, *levels[depth], 0, 0, 0, mine->data());
   const Nodes* first = nullptr;  // of all threads that were making one
   if (nodes_.compare_exchange_strong(first, mine.get(), std::memory_order_acq_rel)) return *mine.release();
   return *first;

@@ -55,6 +55,12 @@ inline LevelWords level_words(const Octree& octree) {
   return levels;
 }
 
+/// Where among the words of the next lower level a gray child of a node of level 3 or more stands.
+/// Requires: the child of that octant is gray.
+inline std::uint64_t gray_child_index(std::uint64_t word, unsigned octant) {
+  return (word >> 16) + static_cast<unsigned>(std::popcount(word >> 8 & 0xFF & ((1u << octant) - 1)));
+}
+
 /// The word of a gray node of level 3 or more with black and white children exchanged.
 inline std::uint64_t exchanged(std::uint64_t word) {
   return (word & ~std::uint64_t{0xFF}) | (~(word | word >> 8) & 0xFF);

@@ -55,10 +55,8 @@ bool Octree::contains(std::int64_t x, std::int64_t y, std::int64_t z) const {
   for (; level > 2; --level) {
     const std::size_t below = level - 1;
     const auto octant = static_cast<unsigned>((x >> below & 1) | (y >> below & 1) << 1 | (z >> below & 1) << 2);
-    const std::uint64_t grays = word >> 8 & 0xFF;
-    if ((grays >> octant & 1) == 0) return word >> octant & 1;
-    const std::uint64_t before = grays & ((1u << octant) - 1);
-    word = levels[below][(word >> 16) + static_cast<unsigned>(std::popcount(before))];
+    if ((word >> (8 + octant) & 1) == 0) return word >> octant & 1;
+    word = levels[below][detail::gray_child_index(word, octant)];
   }
   // A brick; the byte of a tree of depth 1 has its voxels where the first eight of a brick are.
   const auto low = [](std::int64_t coordinate) { return static_cast<unsigned>(coordinate & 3); };

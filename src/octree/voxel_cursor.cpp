@@ -27,14 +27,13 @@ void VoxelCursor::descend(int common) {
   for (; level > 2; --level) {
     const auto below = static_cast<std::size_t>(level - 1);
     const auto octant = static_cast<unsigned>((x_ >> below & 1) | (y_ >> below & 1) << 1 | (z_ >> below & 1) << 2);
-    const std::uint64_t grays = word >> 8 & 0xFF;
     known_ = level;
     level_ = level - 1;
-    if ((grays >> octant & 1) == 0) {
+    if ((word >> (8 + octant) & 1) == 0) {
       voxels_ = -(word >> octant & 1);
       return;
     }
-    word = words_[below][(word >> 16) + static_cast<unsigned>(std::popcount(grays & ((1U << octant) - 1)))];
+    word = words_[below][detail::gray_child_index(word, octant)];
     path_[below] = word;
   }
   voxels_ = word;

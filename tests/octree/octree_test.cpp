@@ -1,12 +1,13 @@
 #include "blackleaf/octree.h"
-#include "blackleaf/implicit.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <thread>
 
 #include "blackleaf/error.h"
+#include "blackleaf/implicit.h"
 #include "blackleaf/leaves.h"
 #include "octree/storage.h"
 #include "reference/dense_grid.h"
