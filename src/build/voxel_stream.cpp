@@ -21,7 +21,7 @@ using Point = std::array<std::int64_t, 3>;
 using detail::BlockTree;
 
 // Enough for the threads to share and for a file to be read at its speed, little enough to stay in the caches.
-constexpr std::int64_t kBytesAtOnce = std::int64_t{8} << 20;
+constexpr std::int64_t kBytesAtOnce = std::int64_t{4} << 20;
 // More than four slices of this size are not asked for, though bricks have four.
 constexpr std::int64_t kLargeSlice = std::int64_t{64} << 20;
 // Values that a thread takes at a time.

@@ -89,7 +89,7 @@ class VolumeJob {
   }
 
   // Reads values of type T; prepare(values, count) makes of them the ones that the octree is built from. While some
-  // slices are built from, the next are read.
+  // slices are built from, the next are read, if there is a thread for it.
   template <class T, class U, class Prepare>
   Octree stream(detail::VolumeSource& source, ValueRange<U> inside, const Prepare& prepare) const {
     VoxelStream<U> stream(size_, inside, placed_.placement, placed_.frame, work_);
@@ -104,16 +104,24 @@ class VolumeJob {
       }
       source.read(slices, values.data());
     };
+    const auto build = [&](std::int64_t slices) {
+      stream.add(prepare(now.data(), slice * static_cast<std::size_t>(slices)), slices);
+    };
+    if (detail::thread_count(work_) == 1) {  // in turns: one buffer is oftener still in the caches than two
+      while (const std::int64_t slices = stream.wanted()) {
+        read(slices, now);
+        build(slices);
+      }
+      return stream.finish();
+    }
     std::int64_t slices = stream.wanted();
     read(slices, now);
     while (slices > 0) {
       const std::int64_t next = stream.wanted(slices);
-      detail::both(
-          work_,
-          [&] {
-            if (next > 0) read(next, ahead);
-          },
-          [&] { stream.add(prepare(now.data(), slice * static_cast<std::size_t>(slices)), slices); });
+      const auto read_next = [&] {
+        if (next > 0) read(next, ahead);
+      };
+      detail::both(work_, read_next, [&] { build(slices); });
       std::swap(now, ahead);
       slices = next;
     }

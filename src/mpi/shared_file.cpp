@@ -123,7 +123,7 @@ SharedOctree by_chunks(Ranks& ranks, const Octree& part, const Cuts& cuts) {
     if (theirs.first >= held.last) break;
     if (!theirs.empty()) from.push_back(other);
   }
-  std::vector<Octree> pieces = {part_of(part, {held.first, std::max(held.first, mine.last)})};
+  std::vector<Octree> pieces = {away.empty() ? part : part_of(part, {held.first, std::max(held.first, mine.last)})};
   auto received = ranks.exchange(to, sent, from);
   for (std::vector<std::uint64_t>& words : received) {
     pieces.push_back(from_words(words, part.depth(), part.frame()));
