@@ -42,9 +42,11 @@ inline int thread_count(const Work& work) {
   return work.threads > 0 ? std::min(work.threads, available) : available;
 }
 
-/// Calls job() where TBB's loops use the caller's threads.
+/// Calls job() where TBB's loops use so many threads.
 template <class Job>
 void with_threads(const Work& work, const Job& job) {
+  // An arena within an arena would not share its work with threads that have nothing left to do in the outer one.
+  if (thread_count(work) == oneapi::tbb::this_task_arena::max_concurrency()) return job();
   oneapi::tbb::task_arena arena(thread_count(work));
   arena.execute(job);
 }
