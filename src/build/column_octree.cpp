@@ -31,10 +31,10 @@ std::uint64_t brick_number(int order, std::int32_t x, std::int32_t y, std::int32
 // Calls visit(first, last) for the parts of [first, last) outside the stretches from `begin` on. Leaves `begin` at the
 // first stretch that can meet a later part. Requires: stretches are increasing.
 template <class Visit>
-void for_each_gap(std::int32_t first, std::int32_t last, const Stretch*& begin, const Stretch* end,
+void for_each_gap(std::int32_t first, std::int32_t last, const ColumnStretch*& begin, const ColumnStretch* end,
                   const Visit& visit) {
   while (begin != end && begin->last <= first) ++begin;
-  for (const Stretch* s = begin; first < last; ++s) {
+  for (const ColumnStretch* s = begin; first < last; ++s) {
     const std::int32_t stop = s == end ? last : std::min(last, s->first);
     if (first < stop) visit(first, stop);
     if (s == end) break;
@@ -84,8 +84,8 @@ class Explicit {
       const auto mark = [&](std::int32_t first, std::int32_t last) {
         for (std::int32_t x = first; x < last; ++x) out.push_back({brick_number(order_, x, y, z), ~std::uint64_t{0}});
       };
-      const Stretch *const begin = slab.begin_of(i), *const end = slab.end_of(i);
-      for (const Stretch* s = begin; s != end; ++s) {
+      const ColumnStretch *const begin = slab.begin_of(i), *const end = slab.end_of(i);
+      for (const ColumnStretch* s = begin; s != end; ++s) {
         if (!s->black) continue;
         if (s->first > 0 && (s == begin || s[-1].last < s->first)) mark(s->first, s->first + 1);
         if (s->last < side_ && (s + 1 == end || s[1].first > s->last)) mark(s->last - 1, s->last);
@@ -99,12 +99,12 @@ class Explicit {
 
   // Marks the black bricks of a column that have a white neighbour in another column.
   template <class Mark>
-  static void mark_beside(const Stretch* begin, const Stretch* end, const Slab& slab, std::int32_t y,
+  static void mark_beside(const ColumnStretch* begin, const ColumnStretch* end, const Slab& slab, std::int32_t y,
                           const Mark& mark) {
     const std::size_t column = slab.find(y);
     const bool any = column < slab.columns.size();
-    const Stretch* other = any ? slab.begin_of(column) : nullptr;
-    const Stretch* const other_end = any ? slab.end_of(column) : nullptr;
+    const ColumnStretch* other = any ? slab.begin_of(column) : nullptr;
+    const ColumnStretch* const other_end = any ? slab.end_of(column) : nullptr;
     for (; begin != end; ++begin)
       if (begin->black) for_each_gap(begin->first, begin->last, other, other_end, mark);
   }
@@ -118,9 +118,9 @@ class Explicit {
     const std::size_t column = slab.find(cube.y >> 2);
     if (column == slab.columns.size()) return false;
     const std::int32_t x = cube.x >> 2;
-    const Stretch* const end = slab.end_of(column);
-    const Stretch* const at =
-        std::partition_point(slab.begin_of(column), end, [x](const Stretch& s) { return s.last <= x; });
+    const ColumnStretch* const end = slab.end_of(column);
+    const ColumnStretch* const at =
+        std::partition_point(slab.begin_of(column), end, [x](const ColumnStretch& s) { return s.last <= x; });
     return at != end && at->first <= x && at->black;
   }
 

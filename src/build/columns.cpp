@@ -222,7 +222,7 @@ class ColumnSweep {
 
   void stretch(std::int32_t first, std::int32_t last, bool black) {
     if (slab_.stretches.size() > column_begin_) {
-      Stretch& previous = slab_.stretches.back();
+      ColumnStretch& previous = slab_.stretches.back();
       if (previous.last == first && previous.black == black) {
         previous.last = last;
         return;

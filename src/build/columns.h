@@ -18,7 +18,7 @@
 namespace blackleaf::detail {
 
 /// Bricks [first, last) along x: all black, or all of two colours.
-struct Stretch {
+struct ColumnStretch {
   std::int32_t first, last;
   bool black;
 };
@@ -35,13 +35,15 @@ struct MixedBrick {
 
 /// One layer of bricks.
 struct Slab {
-  std::vector<BrickColumn> columns;  // by increasing y; only those that are not white
-  std::vector<Stretch> stretches;    // disjoint and increasing within a column
+  std::vector<BrickColumn> columns;      // by increasing y; only those that are not white
+  std::vector<ColumnStretch> stretches;  // disjoint and increasing within a column
   std::vector<MixedBrick> mixed;
 
   /// The stretches of the i-th column.
-  const Stretch* begin_of(std::size_t i) const { return stretches.data() + (i == 0 ? 0 : columns[i - 1].stretch_end); }
-  const Stretch* end_of(std::size_t i) const { return stretches.data() + columns[i].stretch_end; }
+  const ColumnStretch* begin_of(std::size_t i) const {
+    return stretches.data() + (i == 0 ? 0 : columns[i - 1].stretch_end);
+  }
+  const ColumnStretch* end_of(std::size_t i) const { return stretches.data() + columns[i].stretch_end; }
   /// The index of the column at brick coordinate y, or columns.size().
   std::size_t find(std::int32_t y) const;
 };

@@ -164,7 +164,7 @@ class PcdReader {
     std::string line;
     for (std::uint64_t i = 0; i < points_; ++i) {
       if (!bytes_.line(line)) ends_early(i);
-      Words rest(line);
+      WordsOfLine rest(line);
       Eigen::Vector3d point;
       for (std::uint64_t k = 0; k < words_; ++k) {
         const std::string_view word = rest.next();

@@ -59,7 +59,7 @@ class TextVertices {
 
  private:
   Eigen::Vector3d vertex(const PlyElement& element, const Places& places, std::uint64_t index) {
-    Words words(line_);
+    WordsOfLine words(line_);
     Eigen::Vector3d point;
     for (std::size_t k = 0; k < element.properties.size(); ++k) {
       const PlyProperty& property = element.properties[k];

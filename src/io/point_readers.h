@@ -59,9 +59,9 @@ class PointSink {
 };
 
 /// The words of a line between blanks, one after the other.
-class Words {
+class WordsOfLine {
  public:
-  explicit Words(std::string_view line) : rest_(line) {}
+  explicit WordsOfLine(std::string_view line) : rest_(line) {}
   /// Empty at the end.
   std::string_view next() {
     const std::size_t begin = rest_.find_first_not_of(kBlanks);

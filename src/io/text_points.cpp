@@ -55,7 +55,7 @@ class TextReader {
                            : line.find(',') != std::string_view::npos ? ','
                                                                       : ' ';
     if (separator == ' ') {
-      Words words(line);
+      WordsOfLine words(line);
       for (std::string_view word = words.next(); !word.empty(); word = words.next()) fields_.push_back(word);
       return;
     }
