@@ -9,7 +9,7 @@
 namespace blackleaf::detail {
 
 // Tasks are corner cubes so far below the root, for enough of them, and so large at least, for enough to do in each.
-inline constexpr int kTaskLevels = 3, kLeastTaskLevel = 4;
+inline constexpr int kTaskLevels = 3, kLeastTaskLevel = 5;
 
 /// A corner cube and the nodes around it: arguments of corner_walk.
 struct EdgeTask {

@@ -43,11 +43,11 @@ constexpr std::uint64_t moved_up(std::uint64_t brick, std::uint64_t lower, unsig
          (lower & ~m.even & ~m.lower_half) >> (two + one);
 }
 
-/// Bits of the edges that may be visible, from the bits of the voxels around them (64 edges at a time).
+/// Bits of the edges that may be visible, from the bits of the voxels around them (64 edges at a time, or more).
 /// Requires: the family is not end_on.
-constexpr std::uint64_t candidates(const EdgeFamily& family, std::uint64_t A, std::uint64_t B, std::uint64_t C,
-                                   std::uint64_t D) {
-  const std::uint64_t feature = ((A ^ B) | (C ^ D)) & ((A ^ C) | (B ^ D));
+template <class Bits>
+constexpr Bits candidates(const EdgeFamily& family, Bits A, Bits B, Bits C, Bits D) {
+  const Bits feature = ((A ^ B) | (C ^ D)) & ((A ^ C) | (B ^ D));
   if (family.mode == EdgeFamily::Mode::in_plane) return feature & ~(family.d_c > 0 ? A | B : C | D);
   return feature & ~(family.d_b > 0 ? (family.d_c > 0 ? A : C) : (family.d_c > 0 ? B : D));
 }

@@ -1,6 +1,8 @@
 // Strokes: pieces of picture lines united exactly and turned into points of the picture.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <vector>
 
@@ -33,15 +35,23 @@ class PictureLines {
   }
 
   Eigen::Vector2d point(std::int64_t key, std::int64_t position) const {
-    const Wide along = Wide{position} * position_factor_, across = Wide{key} * key_factor_;
-    const auto whole = [&](const std::array<std::int64_t, 3>& axis) {
-      return static_cast<double>(along * axis[position_axis_] + across * axis[key_axis_]);
-    };
     const auto denominator = static_cast<double>(denominator_);
-    return {whole(screen_.u) / denominator / screen_.u_norm, whole(screen_.v) / denominator / screen_.v_norm};
+    return {whole(key, position, screen_.u) / denominator / screen_.u_norm,
+            whole(key, position, screen_.v) / denominator / screen_.v_norm};
   }
 
  private:
+  // The numerator along an axis of the picture, rounded once.
+  double whole(std::int64_t key, std::int64_t position, const std::array<std::int64_t, 3>& axis) const {
+    std::int64_t along, across, sum;  // mostly 64 bits are enough
+    if (!__builtin_mul_overflow(position * position_factor_, axis[position_axis_], &along) &&
+        !__builtin_mul_overflow(key, key_factor_ * axis[key_axis_], &across) &&
+        !__builtin_add_overflow(along, across, &sum))
+      return static_cast<double>(sum);
+    return static_cast<double>(Wide{position * position_factor_} * axis[position_axis_] +
+                               Wide{key} * key_factor_ * axis[key_axis_]);
+  }
+
   Screen screen_;
   unsigned key_axis_, position_axis_;
   std::int64_t denominator_, key_factor_, position_factor_ = 1;

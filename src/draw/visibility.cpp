@@ -37,14 +37,18 @@ const std::vector<Interval>& VisibilityWalk::visible(const Interval& run, std::i
 
 const std::vector<Interval>& VisibilityWalk::visible(const Interval& run, std::int64_t at_b, std::int64_t at_c,
                                                      std::span<const Blocker> nodes) {
-  visible_.reset(run.low, run.high);
+  begin(run);
+  hide(at_b, at_c, nodes);
+  return left();
+}
+
+void VisibilityWalk::hide(std::int64_t at_b, std::int64_t at_c, std::span<const Blocker> nodes) {
   if (family_.mode == EdgeFamily::Mode::in_plane) {
     search_plane(at_b, at_c);
   } else {
     for (const Blocker& blocker : nodes)
       if (search(blocker, at_b, at_c)) break;
   }
-  return visible_.intervals();
 }
 
 // Takes out of visible_ what a node hides; true iff nothing is left.

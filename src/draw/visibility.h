@@ -28,6 +28,16 @@ class VisibilityWalk {
   const std::vector<Interval>& visible(const Interval& run, std::int64_t at_b, std::int64_t at_c,
                                        std::span<const Blocker> nodes);
 
+  /// The same step by step. Begins with a run of which all is visible.
+  void begin(const Interval& run) { visible_.reset(run.low, run.high); }
+  /// Takes an open interval away; true iff nothing is left.
+  bool hide(const Interval& part) {
+    return visible_.meets(part.low, part.high) && visible_.subtract(part.low, part.high);
+  }
+  /// Takes away what these nodes hide. (Rays in lattice planes search the whole tree.)
+  void hide(std::int64_t at_b, std::int64_t at_c, std::span<const Blocker> nodes);
+  const std::vector<Interval>& left() const { return visible_.intervals(); }
+
   /// What rays meet at this time tau or later does not hide. Requires: tau >= 0.
   void stop_at(std::int64_t tau) { stop_ = tau; }
 
