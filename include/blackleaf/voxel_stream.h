@@ -36,7 +36,7 @@ class VoxelStream {
   VoxelStream(VoxelStream&&) noexcept;
   VoxelStream& operator=(VoxelStream&&) noexcept;
 
-  /// How many slices it would like next, once `ahead` more than now have been added: about 8 MiB of them, at least one;
+  /// How many slices it would like next, once `ahead` more than now have been added: about 4 MiB of them, at least one;
   /// 0 when there are no more. Any other number of slices is as good but not as fast.
   std::int64_t wanted(std::int64_t ahead = 0) const;
   /// The next `count` slices; they are not kept. Throws Error(cancelled) when progress refuses: then the stream is of

@@ -119,7 +119,7 @@ std::uint64_t memory_for(const VoxelBox& box, std::size_t value_bytes) {
   const auto side = [&](std::size_t i) { return static_cast<std::uint64_t>(box.high[i] - box.low[i]); };
   const std::uint64_t slice = side(0) * side(1) * value_bytes;
   const std::uint64_t at_once =
-      std::max<std::uint64_t>({std::uint64_t{8} << 20, slice, slice <= (64u << 20) ? 4 * slice : 0});
+      std::max<std::uint64_t>({std::uint64_t{4} << 20, slice, slice <= (64u << 20) ? 4 * slice : 0});
   const std::uint64_t columns = (side(0) / 4 + 2) * (side(1) / 4 + 2);
   const std::uint64_t blocks = (side(0) / 64 + 2) * (side(1) / 64 + 2) * (side(2) / 64 + 2);
   return 2 * std::min(at_once, slice * side(2)) + columns * 16 * (8 + 1) + 16 * blocks;

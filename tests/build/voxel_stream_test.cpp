@@ -133,7 +133,7 @@ TEST(VoxelStreamsOnce, Wanted) {
   EXPECT_EQ(VoxelStream<float>({100, 100, 300}, range).wanted(280), 20);
   EXPECT_EQ(VoxelStream<float>({100, 100, 300}, range).wanted(300), 0);
   EXPECT_EQ(VoxelStream<float>({100, 100, 300}, range, {0, {0, 0, 62}}).wanted(), 2);
-  EXPECT_EQ(VoxelStream<float>({512, 512, 512}, range).wanted(), 8);
+  EXPECT_EQ(VoxelStream<float>({512, 512, 512}, range).wanted(), 4);
   EXPECT_EQ(VoxelStream<float>({4096, 4096, 512}, range).wanted(), 4);  // 64 MiB each
   EXPECT_EQ(VoxelStream<float>({4096, 4096, 512}, range, {0, {0, 0, 3}}).wanted(), 1);
   EXPECT_EQ(VoxelStream<float>({4097, 4096, 512}, range).wanted(), 1);
