@@ -17,9 +17,12 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Shell.hxx>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <gp_Pln.hxx>
 #include <map>
+#include <vector>
 
 #include "contenders.h"
 #include "drawn.h"
@@ -108,13 +111,48 @@ HLRAlgo_Projector projector() {
   return HLRAlgo_Projector(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(d[0], d[1], d[2]), gp_Dir(-d[1], d[0], 0)));
 }
 
+// Of the union: two edges can have one picture, and OpenCASCADE then draws the place twice (1.15 voxels of the ball of
+// radius 32).
 double length_of(const TopoDS_Shape& lines) {
-  double length = 0;
-  if (lines.IsNull()) return length;
+  if (lines.IsNull()) return 0;
+  struct Segment {
+    double slope, offset, low, high;  // direction, line and stretch
+  };
+  std::vector<Segment> segments;
   for (TopExp_Explorer at(lines, TopAbs_EDGE); at.More(); at.Next()) {
     const BRepAdaptor_Curve line(TopoDS::Edge(at.Current()));
-    length += line.Value(line.FirstParameter()).Distance(line.Value(line.LastParameter()));
+    const gp_Pnt from = line.Value(line.FirstParameter()), to = line.Value(line.LastParameter());
+    Eigen::Vector2d along(to.X() - from.X(), to.Y() - from.Y());
+    if (along.norm() == 0) continue;
+    along.normalize();
+    if (along[0] < -1e-9 || (along[0] < 1e-9 && along[1] < 0)) along = -along;
+    const double s = along[0] * from.X() + along[1] * from.Y(), t = along[0] * to.X() + along[1] * to.Y();
+    segments.push_back(
+        {std::atan2(along[1], along[0]), along[0] * from.Y() - along[1] * from.X(), std::min(s, t), std::max(s, t)});
   }
+  const auto same = [](double s, double t) { return std::abs(s - t) < 1e-6; };
+  const auto by = [&](double Segment::*key) {
+    return [key](const Segment& s, const Segment& t) { return s.*key < t.*key; };
+  };
+  // Ranges that agree in a key but for rounding.
+  const auto each_range = [&](auto begin, auto end, double Segment::*key, const auto& visit) {
+    std::sort(begin, end, by(key));
+    for (auto last = begin; begin != end; begin = last) {
+      while (last != end && (last == begin || same((last - 1)->*key, last->*key))) ++last;
+      visit(begin, last);
+    }
+  };
+  double length = 0;
+  each_range(segments.begin(), segments.end(), &Segment::slope, [&](auto first, auto last) {
+    each_range(first, last, &Segment::offset, [&](auto begin, auto end) {
+      std::sort(begin, end, by(&Segment::low));
+      double drawn = begin->low;
+      for (auto at = begin; at != end; ++at) {
+        length += std::max(0.0, at->high - std::max(at->low, drawn));
+        drawn = std::max(drawn, at->high);
+      }
+    });
+  });
   return length;
 }
 

@@ -62,7 +62,7 @@ class Drawer {
   Drawer(const Octree& octree, const Sight& sight)
       : sight_(sight),
         root_(detail::brick_level_root(octree)),
-        bricks_(octree.words(2).data()),
+        blocks_(octree.words(2).data()),
         beam_(octree, sight.beams) {
     for (const EdgeFamily& family : sight.families) {
       // End-on families draw nothing and are never asked; their place is held by another family's walk.
@@ -110,7 +110,7 @@ class Drawer {
 
   // The edges that begin at the corners of a near field's cube.
   void look_around(const detail::Vicinity& vicinity, const Cube& cube) {
-    const NearField field(vicinity, sight_.direction, bricks_);
+    const NearField field(vicinity, sight_.direction, blocks_);
     for (const EdgeFamily& family : sight_.families)
       if (sight_.looks[family.a]) field.find(family, *sight_.looks[family.a], found_[family.a]);
     for (NearEdges& edges : free_) edges.clear();
@@ -158,9 +158,8 @@ class Drawer {
       found.partly.for_each(corners, [&](const NearEdges::Corner& at) {
         const Edge edge(family, cube, at);
         walk.begin(edge.run(1));
-        for (const detail::NearLook& look : sight_.looks[family.a]->looks())
-          if (field.meets(family, look, at) && walk.hide(edge.part(look.hides))) return;
-        search(edge);
+        const auto hide = [&](const detail::NearLook& look) { return walk.hide(edge.part(look.hides)); };
+        if (!field.any_of(family, *sight_.looks[family.a], found, at, hide)) search(edge);
       });
     }
   }
@@ -185,7 +184,7 @@ class Drawer {
 
   const Sight& sight_;
   Node root_;
-  const std::uint64_t* bricks_;
+  detail::NearBlocks blocks_;
   std::vector<detail::VisibilityWalk> walks_;
   detail::Beam beam_;
   std::array<NearField::Found, 3> found_;  // in the near field, by family
@@ -213,6 +212,7 @@ LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   detail::for_each_index(tasks.size(), work, [&](std::size_t i) { Drawer(octree, sight).run(tasks[i]); });
   const Pieces pieces = gather(tasks, work);
   LineDrawing drawing{view, {}};
+  drawing.strokes.reserve(pieces[0].size() + pieces[1].size() + pieces[2].size());
   std::array<bool, 3> done{};  // two families can share a line class
   for (const EdgeFamily& family : sight.families) {
     if (family.mode == EdgeFamily::Mode::end_on || done[family.line_class]) continue;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -21,15 +22,22 @@ namespace blackleaf::detail {
 /// How far looks go along each axis, in voxels.
 inline constexpr int kNearReach = 12;
 
+/// Steps along b and c, and along a what is met in each step and what the edge adds: there are fewer looks than this.
+inline constexpr std::size_t kMostNearLooks = 4 * (2 * kNearReach + 1) + kNearReach;
+
 /// How many voxels are wanted below the edges' corners along an axis: those that rays go to, or a brick of those that
 /// they come from.
 constexpr int voxels_below(std::int64_t d) { return d < 0 ? kNearReach : 4; }
 
-/// Where a voxel stands in rows of 32 bits along x, of which a layer has 32 along y; or from another.
+/// How voxels are laid out: layers along z of rows along y of 32 voxels along x, with four rows and layers to spare on
+/// each side.
+inline constexpr int kRows = 40, kSpareRows = 4;
+
+/// Where a voxel stands among them, or from another.
 struct VoxelStep {
   std::int32_t bytes = 0, bits = 0;
 
-  static VoxelStep to(const std::array<int, 3>& at) { return {128 * at[2] + 4 * at[1], at[0]}; }
+  static constexpr VoxelStep to(const std::array<int, 3>& at) { return {4 * (kRows * at[2] + at[1]), at[0]}; }
   friend VoxelStep operator+(const VoxelStep& s, const VoxelStep& t) { return {s.bytes + t.bytes, s.bits + t.bits}; }
 };
 
@@ -56,6 +64,7 @@ class NearLooks {
       if (leave == (j + 1) * time_c) ++j;
       enter = leave;
     }
+    assert(looks_.size() < kMostNearLooks);
     until_ = static_cast<double>(enter) / static_cast<double>(family.scale);
   }
 

@@ -39,8 +39,9 @@ inline std::vector<Piece> sorted(std::span<std::vector<Piece>* const> parts, con
   constexpr std::size_t kAtOnce = 4096;
   for_each_index((end.size() + kAtOnce - 1) / kAtOnce, {work.threads, {}}, [&](std::size_t i) {
     const std::size_t last = std::min((i + 1) * kAtOnce, end.size());
+    const auto at = [&](std::size_t place) { return all.begin() + static_cast<std::ptrdiff_t>(place); };
     for (std::size_t k = i * kAtOnce, begin = k == 0 ? 0 : end[k - 1]; k < last; begin = end[k++])
-      std::sort(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end[k]));
+      if (end[k] > begin + 1) std::sort(at(begin), at(end[k]));
   });
   return all;
 }

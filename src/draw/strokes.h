@@ -24,20 +24,20 @@ class PictureLines {
     const Direction& d = view.direction();
     key_axis_ = family.b;
     position_axis_ = family.line_class;
+    std::int64_t denominator = family.scale;
     if (family.mode == EdgeFamily::Mode::general) {
-      denominator_ = family.scale;
       key_factor_ = std::abs(family.d_b) * EdgeFamily::sign(family.d_c);
     } else {
       const std::int64_t d_j = d[family.line_class == family.a ? family.c : family.a];
-      denominator_ = key_factor_ = std::abs(d_j);
+      denominator = key_factor_ = std::abs(d_j);
       position_factor_ = EdgeFamily::sign(d_j);
     }
+    u_unit_ = static_cast<double>(denominator) * screen_.u_norm;
+    v_unit_ = static_cast<double>(denominator) * screen_.v_norm;
   }
 
   Eigen::Vector2d point(std::int64_t key, std::int64_t position) const {
-    const auto denominator = static_cast<double>(denominator_);
-    return {whole(key, position, screen_.u) / denominator / screen_.u_norm,
-            whole(key, position, screen_.v) / denominator / screen_.v_norm};
+    return {whole(key, position, screen_.u) / u_unit_, whole(key, position, screen_.v) / v_unit_};
   }
 
  private:
@@ -54,7 +54,8 @@ class PictureLines {
 
   Screen screen_;
   unsigned key_axis_, position_axis_;
-  std::int64_t denominator_, key_factor_, position_factor_ = 1;
+  std::int64_t key_factor_, position_factor_ = 1;
+  double u_unit_, v_unit_;  // the denominator times the axis' length
 };
 
 /// Unites pieces that overlap or touch and appends one stroke for each maximal piece, in order of (key, low).

@@ -16,6 +16,7 @@
 #include "draw/strokes.h"
 #include "draw/visibility.h"
 #include "reference/dense_grid.h"
+#include "reference/every_kernel.h"
 
 namespace blackleaf {
 namespace {
@@ -69,10 +70,13 @@ class OneByOne {
 void expect_like_one_by_one(const Octree& octree, const Eigen::Vector3d& direction) {
   SCOPED_TRACE("view " + show(direction));
   const View view(direction);
-  const std::vector<Stroke> drawn = draw(octree, view).strokes, expected = OneByOne::strokes(octree, view);
-  ASSERT_EQ(drawn.size(), expected.size());
-  for (std::size_t i = 0; i < drawn.size(); ++i)
-    ASSERT_TRUE(drawn[i].from == expected[i].from && drawn[i].to == expected[i].to) << i;
+  const std::vector<Stroke> expected = OneByOne::strokes(octree, view);
+  reference::EveryKernel().run([&] {
+    const std::vector<Stroke> drawn = draw(octree, view).strokes;
+    ASSERT_EQ(drawn.size(), expected.size());
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+      ASSERT_TRUE(drawn[i].from == expected[i].from && drawn[i].to == expected[i].to) << i;
+  });
 }
 
 TEST(NearField, RandomSolids) {
@@ -133,6 +137,7 @@ TEST(NearLooks, AreAllThereAre) {
       if (family.mode == EdgeFamily::Mode::end_on) continue;
       const NearLooks looks(family);
       const auto until = static_cast<std::int64_t>(std::llround(looks.until() * static_cast<double>(family.scale)));
+      ASSERT_LT(looks.looks().size(), detail::kMostNearLooks);
       std::size_t found = 0;
       const bool general = family.mode == EdgeFamily::Mode::general;
       const auto times = [&](std::int64_t at, std::int64_t direction, std::int64_t pace) {
