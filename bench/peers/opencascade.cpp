@@ -115,10 +115,8 @@ HLRAlgo_Projector projector() {
 // radius 32).
 double length_of(const TopoDS_Shape& lines) {
   if (lines.IsNull()) return 0;
-  struct Segment {
-    double slope, offset, low, high;  // direction, line and stretch
-  };
-  std::vector<Segment> segments;
+  // By direction and offset, in millionths: what is drawn of a line.
+  std::map<std::pair<long, long>, std::vector<std::pair<double, double>>> drawn;
   for (TopExp_Explorer at(lines, TopAbs_EDGE); at.More(); at.Next()) {
     const BRepAdaptor_Curve line(TopoDS::Edge(at.Current()));
     const gp_Pnt from = line.Value(line.FirstParameter()), to = line.Value(line.LastParameter());
@@ -127,32 +125,18 @@ double length_of(const TopoDS_Shape& lines) {
     along.normalize();
     if (along[0] < -1e-9 || (along[0] < 1e-9 && along[1] < 0)) along = -along;
     const double s = along[0] * from.X() + along[1] * from.Y(), t = along[0] * to.X() + along[1] * to.Y();
-    segments.push_back(
-        {std::atan2(along[1], along[0]), along[0] * from.Y() - along[1] * from.X(), std::min(s, t), std::max(s, t)});
+    const double offset = along[0] * from.Y() - along[1] * from.X();
+    drawn[{std::lround(1e6 * std::atan2(along[1], along[0])), std::lround(1e6 * offset)}].push_back(std::minmax(s, t));
   }
-  const auto same = [](double s, double t) { return std::abs(s - t) < 1e-6; };
-  const auto by = [&](double Segment::*key) {
-    return [key](const Segment& s, const Segment& t) { return s.*key < t.*key; };
-  };
-  // Ranges that agree in a key but for rounding.
-  const auto each_range = [&](auto begin, auto end, double Segment::*key, const auto& visit) {
-    std::sort(begin, end, by(key));
-    for (auto last = begin; begin != end; begin = last) {
-      while (last != end && (last == begin || same((last - 1)->*key, last->*key))) ++last;
-      visit(begin, last);
-    }
-  };
   double length = 0;
-  each_range(segments.begin(), segments.end(), &Segment::slope, [&](auto first, auto last) {
-    each_range(first, last, &Segment::offset, [&](auto begin, auto end) {
-      std::sort(begin, end, by(&Segment::low));
-      double drawn = begin->low;
-      for (auto at = begin; at != end; ++at) {
-        length += std::max(0.0, at->high - std::max(at->low, drawn));
-        drawn = std::max(drawn, at->high);
-      }
-    });
-  });
+  for (auto& [line, stretches] : drawn) {
+    std::sort(stretches.begin(), stretches.end());
+    double until = stretches.front().first;
+    for (const auto& [low, high] : stretches) {
+      length += std::max(0.0, high - std::max(low, until));
+      until = std::max(until, high);
+    }
+  }
   return length;
 }
 
