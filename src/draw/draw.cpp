@@ -195,11 +195,11 @@ class Drawer {
 // The pieces of all tasks, each class sorted. Their order after sorting does not depend on how they were found.
 Pieces gather(std::vector<Task>& tasks, const Work& work) {
   Pieces all;
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  detail::for_each_index(all.size(), {work.threads, {}}, [&](std::size_t k) {
     std::vector<std::vector<Piece>*> parts;
     for (Task& task : tasks) parts.push_back(&task.pieces[k]);
     all[k] = detail::sorted(parts, work);
-  }
+  });
   return all;
 }
 
@@ -211,15 +211,14 @@ LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   for (const EdgeTask& edges : detail::edge_tasks(octree)) tasks.push_back({edges, {}});
   detail::for_each_index(tasks.size(), work, [&](std::size_t i) { Drawer(octree, sight).run(tasks[i]); });
   const Pieces pieces = gather(tasks, work);
-  LineDrawing drawing{view, {}};
-  drawing.strokes.reserve(pieces[0].size() + pieces[1].size() + pieces[2].size());
+  std::vector<detail::ClassPieces> classes;
   std::array<bool, 3> done{};  // two families can share a line class
   for (const EdgeFamily& family : sight.families) {
     if (family.mode == EdgeFamily::Mode::end_on || done[family.line_class]) continue;
     done[family.line_class] = true;
-    detail::append_strokes(pieces[family.line_class], family, view, drawing.strokes);
+    classes.push_back({pieces[family.line_class], detail::PictureLines(family, view)});
   }
-  return drawing;
+  return {view, detail::strokes_of(classes, work)};
 }
 
 }  // namespace blackleaf

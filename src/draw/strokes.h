@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <span>
 #include <vector>
 
 #include "blackleaf/drawing.h"
+#include "blackleaf/work.h"
 #include "edge_family.h"
 #include "screen.h"
 #include "wide.h"
@@ -59,8 +61,16 @@ class PictureLines {
 };
 
 /// Unites pieces that overlap or touch and appends one stroke for each maximal piece, in order of (key, low).
-/// Requires: `pieces` is sorted and belongs to the family's line class.
-void append_strokes(const std::vector<Piece>& pieces, const EdgeFamily& family, const View& view,
-                    std::vector<Stroke>& strokes);
+/// Requires: `pieces` is sorted and belongs to the line class.
+void append_strokes(std::span<const Piece> pieces, const PictureLines& picture, std::vector<Stroke>& strokes);
+
+/// The sorted pieces of a line class.
+struct ClassPieces {
+  std::span<const Piece> pieces;
+  PictureLines picture;
+};
+
+/// The strokes of all classes, one class after the other.
+std::vector<Stroke> strokes_of(std::span<const ClassPieces> classes, const Work& work);
 
 }  // namespace blackleaf::detail

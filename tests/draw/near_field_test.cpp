@@ -40,7 +40,7 @@ class OneByOne {
       std::sort(pieces.begin(), pieces.end());
       for (const EdgeFamily& family : all.families_)
         if (family.mode != EdgeFamily::Mode::end_on && family.line_class == line_class) {
-          detail::append_strokes(pieces, family, view, strokes);
+          detail::append_strokes(pieces, detail::PictureLines(family, view), strokes);
           break;
         }
     }
