@@ -1,3 +1,5 @@
+#include <oneapi/tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -30,11 +32,6 @@ using detail::Piece;
 using Families = std::array<EdgeFamily, 3>;
 using Pieces = std::array<std::vector<Piece>, 3>;  // by line class
 
-struct Task {
-  EdgeTask edges;
-  Pieces pieces;
-};
-
 // All that drawers share.
 struct Sight {
   detail::Direction direction;
@@ -55,8 +52,9 @@ struct Sight {
   }
 };
 
-// Finds the feature edges of one task and keeps what is visible of them. What the nearest voxels hide is found for
-// many edges at once (near_field.h), what is hidden from afar one run at a time, among the nodes that can (beam.h).
+// Finds the feature edges of tasks and keeps what is visible of them; for one thread. What the nearest voxels hide is
+// found for many edges at once (near_field.h), what is hidden from afar one run at a time, among the nodes that can
+// (beam.h).
 class Drawer {
  public:
   Drawer(const Octree& octree, const Sight& sight)
@@ -71,17 +69,18 @@ class Drawer {
     }
   }
 
-  void run(Task& task) {
-    pieces_ = &task.pieces;
-    const Cube& cube = task.edges.cube;
+  void run(const EdgeTask& task) {
+    const Cube& cube = task.cube;
     if (cube.level < NearField::kLevel) {  // so is the universe
       detail::FeatureEdges<Drawer> edges(sight_.families, *this);
-      detail::corner_walk(task.edges.around, cube, edges);
+      detail::corner_walk(task.around, cube, edges);
       return;
     }
     beam_.start(cube.level);
     walk(detail::Vicinity(root_, cube), cube);
   }
+
+  Pieces& pieces() { return pieces_; }
 
   // A run of edges that anything can hide.
   void operator()(unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
@@ -179,7 +178,7 @@ class Drawer {
   };
 
   void keep(const EdgeFamily& family, std::span<const Interval> visible, std::int64_t b, std::int64_t c) {
-    for (const Interval& interval : visible) (*pieces_)[family.line_class].push_back(family.piece(interval, b, c));
+    for (const Interval& interval : visible) pieces_[family.line_class].push_back(family.piece(interval, b, c));
   }
 
   const Sight& sight_;
@@ -189,15 +188,17 @@ class Drawer {
   detail::Beam beam_;
   std::array<NearField::Found, 3> found_;  // in the near field, by family
   std::array<NearEdges, 3> free_;          // the clear ones of them that nothing can hide from afar
-  Pieces* pieces_ = nullptr;
+  Pieces pieces_;
 };
 
-// The pieces of all tasks, each class sorted. Their order after sorting does not depend on how they were found.
-Pieces gather(std::vector<Task>& tasks, const Work& work) {
+using Drawers = oneapi::tbb::enumerable_thread_specific<Drawer>;
+
+// All pieces, each class sorted. Their order after sorting does not depend on who found them.
+Pieces gather(Drawers& drawers, const Work& work) {
   Pieces all;
   detail::for_each_index(all.size(), {work.threads, {}}, [&](std::size_t k) {
     std::vector<std::vector<Piece>*> parts;
-    for (Task& task : tasks) parts.push_back(&task.pieces[k]);
+    for (Drawer& drawer : drawers) parts.push_back(&drawer.pieces()[k]);
     all[k] = detail::sorted(parts, work);
   });
   return all;
@@ -207,10 +208,10 @@ Pieces gather(std::vector<Task>& tasks, const Work& work) {
 
 LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   const Sight sight(view.direction());
-  std::vector<Task> tasks;
-  for (const EdgeTask& edges : detail::edge_tasks(octree)) tasks.push_back({edges, {}});
-  detail::for_each_index(tasks.size(), work, [&](std::size_t i) { Drawer(octree, sight).run(tasks[i]); });
-  const Pieces pieces = gather(tasks, work);
+  const std::vector<EdgeTask> tasks = detail::edge_tasks(octree);
+  Drawers drawers([&] { return Drawer(octree, sight); });
+  detail::for_each_index(tasks.size(), work, [&](std::size_t i) { drawers.local().run(tasks[i]); });
+  const Pieces pieces = gather(drawers, work);
   std::vector<detail::ClassPieces> classes;
   std::array<bool, 3> done{};  // two families can share a line class
   for (const EdgeFamily& family : sight.families) {

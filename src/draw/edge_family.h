@@ -61,6 +61,7 @@ struct EdgeFamily {
   std::int64_t scale;          // D
   unsigned line_class;         // 0..2, index of a LineClass
   std::int64_t position_sign;  // the sign of S in `position`
+  std::int64_t shift;          // what each c takes from it
 
   static constexpr std::int64_t sign(std::int64_t value) { return value < 0 ? -1 : 1; }
 
@@ -76,6 +77,8 @@ struct EdgeFamily {
       line_class = first ? a : c;
       position_sign = first ? sign(d_c) : -sign(d_c);
     }
+    // In a plane, position_sign carries the sign of d_c; without it, +1 or -1 is left.
+    shift = mode == Mode::general ? d_a * std::abs(d_b) * sign(d_c) : position_sign * sign(d_c) * d_a;
   }
 
   /// The time tau at which rays have gone `times` d, rounded up; the largest there is for anything beyond 2^61.
@@ -89,13 +92,9 @@ struct EdgeFamily {
   /// The picture's name of the positions `visible` of the edge at (b, c) = (at_b, at_c). Requires: mode is not end_on.
   Piece piece(const Interval& visible, std::int64_t at_b, std::int64_t at_c) const {
     assert(mode != Mode::end_on);
-    if (mode == Mode::general) {
-      const std::int64_t shift = at_c * d_a * std::abs(d_b) * sign(d_c);
-      return {at_b * d_c - at_c * d_b, visible.low - shift, visible.high - shift};
-    }
-    // position_sign carries the sign of d_c; without it, +1 or -1 is left for the term c d_a.
-    const std::int64_t shift = position_sign * sign(d_c) * at_c * d_a;
-    const std::int64_t one = position_sign * visible.low - shift, other = position_sign * visible.high - shift;
+    const std::int64_t away = at_c * shift;
+    if (mode == Mode::general) return {at_b * d_c - at_c * d_b, visible.low - away, visible.high - away};
+    const std::int64_t one = position_sign * visible.low - away, other = position_sign * visible.high - away;
     return {at_b, position_sign > 0 ? one : other, position_sign > 0 ? other : one};
   }
 };
