@@ -32,7 +32,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace blackleaf::detail {
@@ -42,9 +41,8 @@ using Direction = std::array<std::int64_t, 3>;
 /// A visible piece of an edge on its picture line: [low, high], low < high.
 struct Piece {
   std::int64_t key, low, high;
-  friend bool operator<(const Piece& p, const Piece& q) {
-    return std::tie(p.key, p.low, p.high) < std::tie(q.key, q.low, q.high);
-  }
+  /// Of pieces that begin at one place any may come first.
+  friend bool operator<(const Piece& p, const Piece& q) { return p.key != q.key ? p.key < q.key : p.low < q.low; }
 };
 
 /// Positions [low, high] in the units of a family.
