@@ -28,8 +28,8 @@ using mpi::Cuts;
 using mpi::Stretch;
 using mpi::VoxelBox;
 
-std::map<std::string, double> costs = {{"--voxel", 0.25}, {"--build", 20}, {"--move", 110},  {"--decode", 70},
-                                       {"--code", 65},    {"--gather", 2}, {"--bytes", 0.95}};
+std::map<std::string, double> costs = {{"--voxel", 0.18}, {"--build", 68},  {"--move", 160}, {"--decode", 99},
+                                       {"--code", 90},    {"--gather", 19}, {"--bytes", 1}};
 double seconds(const char* cost) { return costs.at(cost) * 1e-9; }
 
 // A solid in the unit cube by a function of which no value is farther from zero than the surface is from the point.
