@@ -14,6 +14,7 @@
 #include "near_field.h"
 #include "near_looks.h"
 #include "octree/parallel.h"
+#include "piece_pool.h"
 #include "sorted_pieces.h"
 #include "strokes.h"
 #include "vicinity.h"
@@ -188,7 +189,7 @@ class Drawer {
   detail::Beam beam_;
   std::array<NearField::Found, 3> found_;  // in the near field, by family
   std::array<NearEdges, 3> free_;          // the clear ones of them that nothing can hide from afar
-  Pieces pieces_;
+  Pieces pieces_{detail::PiecePool::take(), detail::PiecePool::take(), detail::PiecePool::take()};
 };
 
 using Drawers = oneapi::tbb::enumerable_thread_specific<Drawer>;
@@ -211,7 +212,7 @@ LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   const std::vector<EdgeTask> tasks = detail::edge_tasks(octree);
   Drawers drawers([&] { return Drawer(octree, sight); });
   detail::for_each_index(tasks.size(), work, [&](std::size_t i) { drawers.local().run(tasks[i]); });
-  const Pieces pieces = gather(drawers, work);
+  Pieces pieces = gather(drawers, work);
   std::vector<detail::ClassPieces> classes;
   std::array<bool, 3> done{};  // two families can share a line class
   for (const EdgeFamily& family : sight.families) {
@@ -219,7 +220,9 @@ LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
     done[family.line_class] = true;
     classes.push_back({pieces[family.line_class], detail::PictureLines(family, view)});
   }
-  return {view, detail::strokes_of(classes, work)};
+  LineDrawing drawing{view, detail::strokes_of(classes, work)};
+  for (std::vector<Piece>& of_class : pieces) detail::PiecePool::give(of_class);
+  return drawing;
 }
 
 }  // namespace blackleaf

@@ -11,6 +11,7 @@
 #include "blackleaf/work.h"
 #include "edge_family.h"
 #include "octree/parallel.h"
+#include "piece_pool.h"
 
 namespace blackleaf::detail {
 
@@ -23,7 +24,8 @@ inline std::vector<Piece> sorted(std::span<std::vector<Piece>* const> parts, con
     count += part->size();
     for (const Piece& piece : *part) least = std::min(least, piece.key), most = std::max(most, piece.key);
   }
-  std::vector<Piece> all(count);
+  std::vector<Piece> all = PiecePool::take();
+  all.resize(count);
   if (count == 0) return all;
   const auto span = static_cast<std::uint64_t>(most - least);  // keys are below 2^42
   const int shift = std::max(0, static_cast<int>(std::bit_width(span)) - static_cast<int>(std::bit_width(count)));
@@ -34,7 +36,7 @@ inline std::vector<Piece> sorted(std::span<std::vector<Piece>* const> parts, con
   for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
   for (std::vector<Piece>* part : parts) {
     for (const Piece& piece : *part) all[end[range(piece)]++] = piece;
-    std::vector<Piece>().swap(*part);
+    PiecePool::give(*part);
   }
   constexpr std::size_t kAtOnce = 4096;
   for_each_index((end.size() + kAtOnce - 1) / kAtOnce, {work.threads, {}}, [&](std::size_t i) {
