@@ -1,7 +1,7 @@
 // PiecePool: memory for pieces that the next drawing uses again.
 //
-// A small drawing takes less time than the system takes to give it memory, page by page, that the last one has just
-// given back: of a ball of radius 32 that was a tenth.
+// Memory that one drawing gives back, the system takes away and gives to the next page by page: of the time that a ball
+// of radius 32 takes that was a tenth.
 #pragma once
 
 #include <mutex>
