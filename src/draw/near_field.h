@@ -5,13 +5,11 @@
 // of the address, along x of the bits.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 
-#include "feature_edges.h"
 #include "near_blocks.h"
 #include "near_kernel.h"
 #include "near_looks.h"
@@ -71,6 +69,7 @@ class NearEdges {
       std::memcpy(&rows_[z][2 * pair], &both, sizeof(both));
     });
   }
+  /// Whether a cube has any.
   bool any(const CornerCube& cube) const { return (bricks_ & cube.bricks()) != 0; }
   /// Calls sink(corner) for every edge of a cube.
   template <class Sink>

@@ -32,13 +32,8 @@ VisibilityWalk::VisibilityWalk(const Octree& octree, const EdgeFamily& family)
 
 const std::vector<Interval>& VisibilityWalk::visible(const Interval& run, std::int64_t at_b, std::int64_t at_c) {
   const Blocker root{root_, 0, 0, 0};
-  return visible(run, at_b, at_c, {&root, root_.is_white() ? 0u : 1u});
-}
-
-const std::vector<Interval>& VisibilityWalk::visible(const Interval& run, std::int64_t at_b, std::int64_t at_c,
-                                                     std::span<const Blocker> nodes) {
   begin(run);
-  hide(at_b, at_c, nodes);
+  hide(at_b, at_c, {&root, root_.is_white() ? 0u : 1u});
   return left();
 }
 

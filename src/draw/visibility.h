@@ -23,19 +23,16 @@ class VisibilityWalk {
   /// The visible intervals of `run`, a part of the edges along a at (b, c) = (at_b, at_c), closed, in the family's
   /// units; valid until the next call.
   const std::vector<Interval>& visible(const Interval& run, std::int64_t at_b, std::int64_t at_c);
-  /// The same if none but these nodes of the tree can hide anything of the run; nearest first is fastest. (Rays in
-  /// lattice planes search the whole tree.)
-  const std::vector<Interval>& visible(const Interval& run, std::int64_t at_b, std::int64_t at_c,
-                                       std::span<const Blocker> nodes);
-
   /// The same step by step. Begins with a run of which all is visible.
   void begin(const Interval& run) { visible_.reset(run.low, run.high); }
   /// Takes an open interval away; true iff nothing is left.
   bool hide(const Interval& part) {
     return visible_.meets(part.low, part.high) && visible_.subtract(part.low, part.high);
   }
-  /// Takes away what these nodes hide. (Rays in lattice planes search the whole tree.)
+  /// Takes away what these nodes of the tree hide; nearest first is fastest. (Rays in lattice planes search the whole
+  /// tree.)
   void hide(std::int64_t at_b, std::int64_t at_c, std::span<const Blocker> nodes);
+  /// What is left, as visible() returns it.
   const std::vector<Interval>& left() const { return visible_.intervals(); }
 
   /// What rays meet at this time tau or later does not hide. Requires: tau >= 0.

@@ -133,7 +133,7 @@ class SweptVoxels {
 
   // Sets the voxels of a brick whose first voxel is (x, y, z).
   void put(std::uint64_t brick, std::size_t x, std::size_t y, std::size_t z) {
-    const std::uint64_t rows = detail::in_rows(brick);
+    const std::uint64_t rows = detail::rows_from_brick(brick);
     for (std::size_t k = 0; k < 4; ++k) {
       // Four rows of four voxels, each brought to the top of 16 bits and from there to its place.
       const auto plane = static_cast<std::uint32_t>(rows >> (16 * k) & 0xFFFF);

@@ -23,18 +23,6 @@ constexpr unsigned brick_x(unsigned bit) { return (bit & 1) | (bit >> 2 & 2); }
 constexpr unsigned brick_y(unsigned bit) { return (bit >> 1 & 1) | (bit >> 3 & 2); }
 constexpr unsigned brick_z(unsigned bit) { return (bit >> 2 & 1) | (bit >> 4 & 2); }
 
-/// The bits of a brick with x fastest, then y, then z: three exchanges of two bits of the index.
-constexpr std::uint64_t in_rows(std::uint64_t brick) {
-  const auto exchange = [&](unsigned shift, std::uint64_t mask) {
-    const std::uint64_t t = (brick ^ brick >> shift) & mask;
-    brick ^= t ^ t << shift;
-  };
-  exchange(6, 0x00CC'00CC'00CC'00CC);  // x0 y0 z0 x1 y1 z1 -> x0 x1 z0 y0 y1 z1
-  exchange(4, 0x00F0'00F0'00F0'00F0);  // -> x0 x1 y0 z0 y1 z1
-  exchange(8, 0x0000'FF00'0000'FF00);  // -> x0 x1 y0 y1 z0 z1
-  return brick;
-}
-
 /// kBrickOrder[table][i]: the bit index of the i-th voxel that the Millar curve visits in a brick entered with `table`.
 inline constexpr auto kBrickOrder = [] {
   std::array<std::array<std::uint8_t, 64>, 24> order{};

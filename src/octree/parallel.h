@@ -45,7 +45,9 @@ inline int thread_count(const Work& work) {
 /// Calls job() where TBB's loops use so many threads.
 template <class Job>
 void with_threads(const Work& work, const Job& job) {
-  // An arena within an arena would not share its work with threads that have nothing left to do in the outer one.
+  // An arena within an arena would not share its work with threads that have nothing left to do in the outer one. So a
+  // thread that waits for an inner loop may take up a body of the outer one: no loop may run under a lock that bodies
+  // take.
   if (thread_count(work) == oneapi::tbb::this_task_arena::max_concurrency()) return job();
   oneapi::tbb::task_arena arena(thread_count(work));
   arena.execute(job);
