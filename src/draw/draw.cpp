@@ -61,7 +61,7 @@ class Drawer {
   Drawer(const Octree& octree, const Sight& sight)
       : sight_(sight),
         root_(detail::brick_level_root(octree)),
-        blocks_(octree.words(2).data()),
+        blocks_(detail::level_words(octree)),
         beam_(octree, sight.beams) {
     for (const EdgeFamily& family : sight.families) {
       // End-on families draw nothing and are never asked; their place is held by another family's walk.
@@ -110,9 +110,8 @@ class Drawer {
 
   // The edges that begin at the corners of a near field's cube.
   void look_around(const detail::Vicinity& vicinity, const Cube& cube) {
-    const NearField field(vicinity, sight_.direction, blocks_);
-    for (const EdgeFamily& family : sight_.families)
-      if (sight_.looks[family.a]) field.find(family, *sight_.looks[family.a], found_[family.a]);
+    NearField field(vicinity, sight_.direction, blocks_);
+    if (!field.find(sight_.families, sight_.looks, found_)) return;
     for (NearEdges& edges : free_) edges.clear();
     const detail::CornerCube all{0, 0, 0, NearEdges::kSide};
     for (unsigned octant = 0; octant < 8; ++octant)

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 #include "near_blocks.h"
 #include "near_kernel.h"
@@ -49,6 +50,7 @@ class NearEdges {
   /// Sixteen layers along z of 16 rows of 32 bits along y; whoever has written to them calls written().
   std::uint32_t* rows() { return rows_[0].data(); }
   void written() {
+    bricks_ = 0;
     for (unsigned layer = 0; layer < 4; ++layer)
       for (unsigned quad = 0; quad < 4; ++quad) {
         std::uint64_t rows = 0;
@@ -69,6 +71,7 @@ class NearEdges {
       std::memcpy(&rows_[z][2 * pair], &both, sizeof(both));
     });
   }
+  bool any() const { return bricks_ != 0; }
   /// Whether a cube has any.
   bool any(const CornerCube& cube) const { return (bricks_ & cube.bricks()) != 0; }
   /// Calls sink(corner) for every edge of a cube.
@@ -148,37 +151,47 @@ class NearField {
     NearMet met;       // what meets black for some of the latter
   };
 
-  /// Takes the voxels about a cube. Requires: level 4; the direction is that of the families; blocks of the same tree.
+  /// The voxels about a cube, until the blocks make room. Requires: level 4; the direction is that of the families;
+  /// blocks of the same tree.
   NearField(const Vicinity& vicinity, const Direction& d, NearBlocks& blocks) {
     static_assert(kNearReach == 12);
     static_assert(kSpareRows == 4 && kRows == 32 + 2 * kSpareRows);
-    std::array<unsigned, 3> first{};  // of the halves of the vicinity's nodes; one begins four voxels early
-    for (std::size_t i = 0; i < 3; ++i) {
-      below_[i] = voxels_below(d[i]);
-      first[i] = below_[i] == kNearReach ? 0 : 1;
-    }
-    std::array<NearBlock, 5> side_by_side;
-    for (unsigned z = 0; z < 5; ++z)
-      for (unsigned y = 0; y < 5; ++y) {
-        for (unsigned x = 0; x < 5; ++x) {
-          const Node node = vicinity.half(first[0] + x, first[1] + y, first[2] + z);
-          if (node.is_gray())
-            side_by_side[x] = blocks.block(node.word());
-          else
-            std::memset(&side_by_side[x], node.is_black() ? 0xFF : 0, sizeof(NearBlock));
-        }
-        lay_out(side_by_side, reinterpret_cast<char*>(&rows_[8 * z][8 * y]));
-      }
+    blocks.make_room();
+    for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i] = &blocks.block(vicinity.nodes()[i]);
+    for (std::size_t i = 0; i < blocks_.size(); i += 3)
+      if (const auto& nodes = vicinity.nodes();
+          nodes[i].is_white() && nodes[i + 1].is_white() && nodes[i + 2].is_white())
+        white_ |= 1u << i;
+    for (std::size_t i = 0; i < 3; ++i) below_[i] = voxels_below(d[i]);
   }
 
-  /// The edges of a family that may be visible (feature_edges.h), sorted out.
-  void find(const EdgeFamily& family, const NearLooks& looks, Found& found) const {
-    found.clear.clear();
-    found.partly.clear();
-    look({family, bytes(), VoxelStep::to(below_), beside(family.b), beside(family.c), looks.first(), looks.others()},
-         found.clear.rows(), found.partly.rows(), found.met);
-    found.clear.written();
-    found.partly.written();
+  /// The edges of the families that may be visible (feature_edges.h), sorted out, by family; whether there are any. Of
+  /// families without looks nothing is found.
+  bool find(const std::array<EdgeFamily, 3>& families, const std::array<std::optional<NearLooks>, 3>& looks,
+            std::array<Found, 3>& found) {
+    // Many a cube has none, as it is behind the solid, or touches it with a side; to see that, a part is enough.
+    lay_out_part(true);
+    std::array<EdgeRows, 3> edges{};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      found[axis].clear.clear();
+      found[axis].partly.clear();
+      edges[axis] = found[axis].partly.rows();
+    }
+    const unsigned there = candidates(families, bytes(), VoxelStep::to(below_), edges);
+    if (there == 0) return false;
+    lay_out_part(false);
+    bool any = false;
+    for (const EdgeFamily& family : families) {
+      if (!(there >> family.a & 1)) continue;
+      Found& of = found[family.a];
+      const NearLooks& sight = *looks[family.a];
+      look({family, bytes(), VoxelStep::below(family.b), sight.first(), sight.others()}, of.partly.rows(),
+           of.clear.rows(), of.met);
+      of.clear.written();
+      of.partly.written();
+      any |= of.clear.any() || of.partly.any();
+    }
+    return any;
   }
 
   /// Calls hide(look) for what meets black of a partly clear edge, in the order of the looks, until that returns true;
@@ -188,7 +201,7 @@ class NearField {
               const Hide& hide) const {
     const char* const from =
         bytes() + VoxelStep::to({0, static_cast<int>(corner[1]), static_cast<int>(corner[2])}).bytes;
-    const VoxelStep b = beside(family.b);
+    const VoxelStep b = VoxelStep::below(family.b);
     const auto is_black = [&](const VoxelStep& step) {
       std::uint32_t row;
       std::memcpy(&row, from + step.bytes, sizeof(row));
@@ -206,13 +219,35 @@ class NearField {
  private:
   // The first row that is not spare.
   const char* bytes() const { return reinterpret_cast<const char*>(&rows_[kSpareRows][kSpareRows]); }
-  // To the voxel on the other side of the lattice plane across an axis.
-  static VoxelStep beside(unsigned axis) {
-    std::array<int, 3> at{};
-    at[axis] = -1;
-    return VoxelStep::to(at);
+  // Lays out, of the halves of the vicinity's nodes, the middle 3^3 along y and z or the others.
+  void lay_out_part(bool middle) {
+    const unsigned first_y = first(1), first_z = first(2);
+    for (unsigned z = 0; z < 5; ++z)
+      for (unsigned y = 0; y < 5; ++y) {
+        const unsigned half_y = first_y + y, half_z = first_z + z;
+        if ((half_y - 1 < 3 && half_z - 1 < 3) == middle) lay_out_row(half_y, half_z, &rows_[8 * z][8 * y]);
+      }
   }
-  std::array<int, 3> below_{};  // voxels below the cube
+  void lay_out_row(unsigned half_y, unsigned half_z, std::uint32_t* rows) const {
+    const std::size_t row = 3 * (half_y / 2) + 9 * (half_z / 2);
+    if (white_ >> row & 1) {
+      for (unsigned layer = 0; layer < 8; ++layer) std::memset(rows + kRows * layer, 0, 8 * sizeof(*rows));
+      return;
+    }
+    const std::size_t within = 128 * (half_z & 1) + 8 * (half_y & 1);
+    SideBySide pieces;
+    for (unsigned x = 0; x < 5; ++x) {
+      const unsigned half_x = first(0) + x;
+      pieces[x] = (*blocks_[row + half_x / 2])[half_x & 1][0].data() + within;
+    }
+    lay_out(pieces, reinterpret_cast<char*>(rows));
+  }
+  // Of the halves of the vicinity's nodes; one begins four voxels early.
+  unsigned first(std::size_t axis) const { return below_[axis] == kNearReach ? 0 : 1; }
+
+  std::array<const NearBlock*, 27> blocks_;  // of the vicinity
+  std::uint32_t white_ = 0;                  // a bit for each three of them, side by side along x, that are white
+  std::array<int, 3> below_{};               // voxels below the cube
   std::array<std::array<std::uint32_t, kRows>, kRows> rows_;
 };
 

@@ -16,67 +16,112 @@ namespace blackleaf::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// As many rows at once as there are lanes.
-template <bool kInPlane>
-void look_lanes_of(const NearQuestion& q, std::uint32_t* clear, std::uint32_t* partly, NearMet& met) {
-  const hn::CappedTag<std::uint32_t, 16> d;
-  const auto voxels = [&](const char* from, const VoxelStep& step) {
-    return hn::ShiftRightSame(hn::LoadU(d, reinterpret_cast<const std::uint32_t*>(from + step.bytes)), step.bits);
-  };
-  const VoxelStep b = q.corner + q.beside_b, c = q.corner + q.beside_c, bc = b + q.beside_c;
-  // The voxels that rays enter first.
-  const EdgeFamily& f = q.family;
-  const bool up_b = f.d_b > 0, up_c = f.d_c > 0;
-  const VoxelStep entered = kInPlane ? (up_c ? q.corner : c) : up_b ? (up_c ? q.corner : c) : (up_c ? b : bc);
-  const auto of_corners = hn::Set(d, 0xFFFF);
-  met = {};
-  for (int z = 0; z < 16; ++z)
-    for (int y = 0; y < 16; y += static_cast<int>(hn::Lanes(d))) {
-      const char* const from = q.rows + VoxelStep::to({0, y, z}).bytes;
-      const auto at = voxels(from, q.corner), at_b = voxels(from, b), at_c = voxels(from, c), at_bc = voxels(from, bc);
-      auto edges =
-          hn::And(hn::Or(hn::Xor(at, at_b), hn::Xor(at_c, at_bc)), hn::Or(hn::Xor(at, at_c), hn::Xor(at_b, at_bc)));
-      auto blocked = voxels(from, entered);
-      if constexpr (kInPlane) blocked = hn::Or(blocked, voxels(from, entered + q.beside_b));
-      edges = hn::AndNot(blocked, hn::And(edges, of_corners));
-      const auto none = hn::Zero(d);
-      if (hn::AllTrue(d, hn::Eq(edges, none))) continue;
-      const auto black_at = [&](const NearLook& look) {
-        auto black = voxels(from, look.step);
-        if constexpr (kInPlane) black = hn::And(black, voxels(from, look.step + q.beside_b));
-        return black;
-      };
-      auto touched = none, hidden = none, last = none;
-      for (const NearLook& look : q.first) {
-        const auto black = black_at(look);
-        touched = hn::Or(touched, black);
-        if (look.alone) hidden = hn::Or(hidden, black);
-        if (look.with_last) hidden = hn::Or(hidden, hn::And(black, last));
-        last = black;
-      }
-      edges = hn::AndNot(hidden, edges);
-      if (hn::AllTrue(d, hn::Eq(edges, none))) continue;
-      for (const NearLook& look : q.others) touched = hn::Or(touched, black_at(look));
-      hn::StoreU(hn::AndNot(touched, edges), d, clear + 16 * z + y);
-      const auto parts = hn::And(touched, edges);
-      if (hn::AllTrue(d, hn::Eq(parts, none))) continue;
-      hn::StoreU(parts, d, partly + 16 * z + y);
-      std::size_t i = 0;
-      for (const auto looks : {q.first, q.others})
-        for (const NearLook& look : looks) {
-          const bool some = !hn::AllTrue(d, hn::Eq(hn::And(black_at(look), parts), none));
-          met[static_cast<std::size_t>(z)][i / 64] |= std::uint64_t{some} << (i % 64);
-          ++i;
-        }
-    }
+// The voxels that rays of an edge enter first, from that above its corner: two, or one twice.
+struct EnteredVoxels {
+  bool draws = false;
+  VoxelStep one, other;
+
+  EnteredVoxels() = default;
+  explicit EnteredVoxels(const EdgeFamily& f) : draws(f.mode != EdgeFamily::Mode::end_on) {
+    const VoxelStep b = VoxelStep::below(f.b);
+    if (f.d_c < 0) one = VoxelStep::below(f.c);
+    if (f.mode == EdgeFamily::Mode::general && f.d_b < 0) one = one + b;
+    other = f.mode == EdgeFamily::Mode::in_plane ? one + b : one;
+  }
+};
+
+using Lanes = hn::CappedTag<std::uint32_t, 16>;  // as many rows at once
+using Rows = hn::VFromD<Lanes>;
+
+HWY_INLINE Rows voxels(const char* from, const VoxelStep& step) {
+  const Lanes d;
+  return hn::ShiftRightSame(hn::LoadU(d, reinterpret_cast<const std::uint32_t*>(from + step.bytes)), step.bits);
 }
 
-void lay_out_lanes(const std::array<NearBlock, 5>& blocks, char* rows) {
+// Calls visit(z, voxels from there on, the place of its first row) for all rows of corners.
+template <class Visit>
+void for_all_rows(const char* rows, const Visit& visit) {
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 16; y += static_cast<int>(hn::Lanes(Lanes())))
+      visit(static_cast<std::size_t>(z), rows + VoxelStep::to({0, y, z}).bytes, 16 * z + y);
+}
+
+unsigned candidates_lanes(const std::array<EdgeFamily, 3>& families, const char* rows, const VoxelStep& corner,
+                          const std::array<EdgeRows, 3>& edges) {
+  const Lanes d;
+  const auto of_corners = hn::Set(d, 0xFFFF), none = hn::Zero(d);
+  constexpr VoxelStep kBelowX = VoxelStep::below(0), kBelowY = VoxelStep::below(1), kBelowZ = VoxelStep::below(2);
+  std::array<EnteredVoxels, 3> entered;
+  for (const EdgeFamily& family : families) entered[family.a] = EnteredVoxels(family);
+  auto any_x = none, any_y = none, any_z = none;
+  for_all_rows(rows, [&](std::size_t, const char* from, int row) {
+    const auto at = [&](const VoxelStep& step) { return voxels(from, corner + step); };
+    // Named after the axes along which they are above the corner.
+    const auto x = at(kBelowY + kBelowZ), y = at(kBelowX + kBelowZ), z = at(kBelowX + kBelowY);
+    const auto xy = at(kBelowZ), xz = at(kBelowY), yz = at(kBelowX), xyz = at({});
+    const auto find = [&](unsigned axis, auto a, auto ab, auto ac, auto& any) {
+      auto found = none;
+      if (entered[axis].draws) {
+        const auto feature =
+            hn::And(hn::Or(hn::Xor(xyz, ab), hn::Xor(ac, a)), hn::Or(hn::Xor(xyz, ac), hn::Xor(ab, a)));
+        const auto blocked = hn::Or(at(entered[axis].one), at(entered[axis].other));
+        found = hn::AndNot(blocked, hn::And(feature, of_corners));
+        any = hn::Or(any, found);
+      }
+      hn::StoreU(found, d, edges[axis] + row);
+    };
+    find(0, x, xy, xz, any_x);
+    find(1, y, xy, yz, any_y);
+    find(2, z, xz, yz, any_z);
+  });
+  const auto bit = [&](auto any) { return hn::AllTrue(d, hn::Eq(any, none)) ? 0u : 1u; };
+  return bit(any_x) | bit(any_y) << 1 | bit(any_z) << 2;
+}
+
+template <bool kInPlane>
+void look_of(const NearQuestion& q, EdgeRows edges, EdgeRows clear, NearMet& met) {
+  const Lanes d;
+  const auto none = hn::Zero(d);
+  met = {};
+  for_all_rows(q.rows, [&](std::size_t z, const char* from, int row) {
+    auto left = hn::LoadU(d, edges + row);
+    if (hn::AllTrue(d, hn::Eq(left, none))) return;
+    const auto black_at = [&](const NearLook& look) {
+      auto black = voxels(from, look.step);
+      if constexpr (kInPlane) black = hn::And(black, voxels(from, look.step + q.beside_b));
+      return black;
+    };
+    auto touched = none, hidden = none, last = none;
+    for (const NearLook& look : q.first) {
+      const auto black = black_at(look);
+      touched = hn::Or(touched, black);
+      if (look.alone) hidden = hn::Or(hidden, black);
+      if (look.with_last) hidden = hn::Or(hidden, hn::And(black, last));
+      last = black;
+    }
+    left = hn::AndNot(hidden, left);
+    if (hn::AllTrue(d, hn::Eq(left, none))) return hn::StoreU(none, d, edges + row);
+    for (const NearLook& look : q.others) touched = hn::Or(touched, black_at(look));
+    hn::StoreU(hn::AndNot(touched, left), d, clear + row);
+    const auto parts = hn::And(touched, left);
+    hn::StoreU(parts, d, edges + row);
+    if (hn::AllTrue(d, hn::Eq(parts, none))) return;
+    std::size_t i = 0;
+    for (const auto looks : {q.first, q.others})
+      for (const NearLook& look : looks) {
+        const bool some = !hn::AllTrue(d, hn::Eq(hn::And(black_at(look), parts), none));
+        met[z][i / 64] |= std::uint64_t{some} << (i % 64);
+        ++i;
+      }
+  });
+}
+
+void lay_out_lanes(const SideBySide& pieces, char* rows) {
   const hn::CappedTag<std::uint32_t, 8> d;
   const hn::Rebind<std::uint8_t, decltype(d)> bytes;
   for (std::size_t z = 0; z < 8; ++z)
     for (std::size_t y = 0; y < 8; y += hn::Lanes(d)) {
-      const auto of = [&](std::size_t x) { return hn::PromoteTo(d, hn::LoadU(bytes, &blocks[x][z][y])); };
+      const auto of = [&](std::size_t x) { return hn::PromoteTo(d, hn::LoadU(bytes, pieces[x] + 16 * z + y)); };
       const auto lower = hn::Or(hn::ShiftRight<4>(of(0)), hn::ShiftLeft<4>(of(1)));
       const auto upper = hn::Or(hn::ShiftLeft<20>(of(3)), hn::ShiftLeft<28>(of(4)));
       hn::StoreU(hn::Or(hn::Or(lower, upper), hn::ShiftLeft<12>(of(2))), d,
@@ -84,9 +129,9 @@ void lay_out_lanes(const std::array<NearBlock, 5>& blocks, char* rows) {
     }
 }
 
-void look_lanes(const NearQuestion& q, std::uint32_t* clear, std::uint32_t* partly, NearMet& met) {
-  q.family.mode == EdgeFamily::Mode::in_plane ? look_lanes_of<true>(q, clear, partly, met)
-                                              : look_lanes_of<false>(q, clear, partly, met);
+void look_lanes(const NearQuestion& q, EdgeRows edges, EdgeRows clear, NearMet& met) {
+  q.family.mode == EdgeFamily::Mode::in_plane ? look_of<true>(q, edges, clear, met)
+                                              : look_of<false>(q, edges, clear, met);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -98,34 +143,47 @@ namespace blackleaf::detail {
 namespace {
 
 HWY_EXPORT(lay_out_lanes);
+HWY_EXPORT(candidates_lanes);
 HWY_EXPORT(look_lanes);
 
-void lay_out_scalar(const std::array<NearBlock, 5>& blocks, char* rows) {
+void lay_out_scalar(const SideBySide& pieces, char* rows) {
   for (std::size_t z = 0; z < 8; ++z)
     for (std::size_t y = 0; y < 8; ++y) {
-      const std::uint32_t row = std::uint32_t{blocks[0][z][y]} >> 4 | std::uint32_t{blocks[1][z][y]} << 4 |
-                                std::uint32_t{blocks[2][z][y]} << 12 | std::uint32_t{blocks[3][z][y]} << 20 |
-                                std::uint32_t{blocks[4][z][y]} << 28;
+      const auto of = [&](std::size_t x) { return std::uint32_t{pieces[x][16 * z + y]}; };
+      const std::uint32_t row = of(0) >> 4 | of(1) << 4 | of(2) << 12 | of(3) << 20 | of(4) << 28;
       std::memcpy(rows + sizeof(row) * (kRows * z + y), &row, sizeof(row));
     }
 }
 
-// Row by row.
-void look_scalar(const NearQuestion& q, std::uint32_t* clear, std::uint32_t* partly, NearMet& met) {
+// 32 voxels, that many steps away from the corners of a row.
+std::uint32_t voxels_scalar(const char* rows, int row, const VoxelStep& step) {
+  std::uint32_t bits;
+  std::memcpy(&bits, rows + VoxelStep::to({0, row % 16, row / 16}).bytes + step.bytes, sizeof(bits));
+  return bits >> step.bits;
+}
+
+unsigned candidates_scalar(const std::array<EdgeFamily, 3>& families, const char* rows, const VoxelStep& corner,
+                           const std::array<EdgeRows, 3>& edges) {
+  unsigned any = 0;
+  for (const EdgeFamily& family : families)
+    for (int row = 0; row < 256; ++row) {
+      const auto voxels = [&](const VoxelStep& step) { return voxels_scalar(rows, row, corner + step); };
+      const VoxelStep b = VoxelStep::below(family.b), c = VoxelStep::below(family.c);
+      const bool drawn = family.mode != EdgeFamily::Mode::end_on;
+      edges[family.a][row] = drawn ? candidates(family, voxels({}), voxels(b), voxels(c), voxels(b + c)) & 0xFFFF : 0;
+      if (edges[family.a][row] != 0) any |= 1u << family.a;
+    }
+  return any;
+}
+
+void look_scalar(const NearQuestion& q, EdgeRows edges, EdgeRows clear, NearMet& met) {
   met = {};
   for (int row = 0; row < 256; ++row) {
-    const auto voxels = [&](const VoxelStep& step) {
-      std::uint32_t bits;
-      std::memcpy(&bits, q.rows + VoxelStep::to({0, row % 16, row / 16}).bytes + step.bytes, sizeof(bits));
-      return bits >> step.bits;
-    };
     const auto black_at = [&](const NearLook& look) {
       const bool in_plane = q.family.mode == EdgeFamily::Mode::in_plane;
-      return voxels(look.step) & (in_plane ? voxels(look.step + q.beside_b) : ~0u);
+      return voxels_scalar(q.rows, row, look.step) &
+             (in_plane ? voxels_scalar(q.rows, row, look.step + q.beside_b) : ~0u);
     };
-    const VoxelStep b = q.corner + q.beside_b, c = q.corner + q.beside_c;
-    const std::uint32_t edges =
-        candidates(q.family, voxels(q.corner), voxels(b), voxels(c), voxels(b + q.beside_c)) & 0xFFFF;
     std::uint32_t touched = 0, hidden = 0, last = 0;
     for (const NearLook& look : q.first) {
       const std::uint32_t black = black_at(look);
@@ -135,12 +193,12 @@ void look_scalar(const NearQuestion& q, std::uint32_t* clear, std::uint32_t* par
       last = black;
     }
     for (const NearLook& look : q.others) touched |= black_at(look);
-    clear[row] = edges & ~touched;
-    partly[row] = edges & touched & ~hidden;
+    clear[row] = edges[row] & ~touched;
+    edges[row] &= touched & ~hidden;
     std::size_t i = 0;
     for (const auto looks : {q.first, q.others})
       for (const NearLook& look : looks) {
-        const bool some = (black_at(look) & partly[row]) != 0;
+        const bool some = (black_at(look) & edges[row]) != 0;
         met[static_cast<std::size_t>(row / 16)][i / 64] |= std::uint64_t{some} << (i % 64);
         ++i;
       }
@@ -149,14 +207,20 @@ void look_scalar(const NearQuestion& q, std::uint32_t* clear, std::uint32_t* par
 
 }  // namespace
 
-void lay_out(const std::array<NearBlock, 5>& blocks, char* rows) {
-  if (scalar_kernel_wanted()) return lay_out_scalar(blocks, rows);
-  HWY_DYNAMIC_DISPATCH(lay_out_lanes)(blocks, rows);
+void lay_out(const SideBySide& pieces, char* rows) {
+  if (scalar_kernel_wanted()) return lay_out_scalar(pieces, rows);
+  HWY_DYNAMIC_DISPATCH(lay_out_lanes)(pieces, rows);
 }
 
-void look(const NearQuestion& question, std::uint32_t* clear, std::uint32_t* partly, NearMet& met) {
-  if (scalar_kernel_wanted()) return look_scalar(question, clear, partly, met);
-  HWY_DYNAMIC_DISPATCH(look_lanes)(question, clear, partly, met);
+unsigned candidates(const std::array<EdgeFamily, 3>& families, const char* rows, const VoxelStep& corner,
+                    const std::array<EdgeRows, 3>& edges) {
+  if (scalar_kernel_wanted()) return candidates_scalar(families, rows, corner, edges);
+  return HWY_DYNAMIC_DISPATCH(candidates_lanes)(families, rows, corner, edges);
+}
+
+void look(const NearQuestion& question, EdgeRows edges, EdgeRows clear, NearMet& met) {
+  if (scalar_kernel_wanted()) return look_scalar(question, edges, clear, met);
+  HWY_DYNAMIC_DISPATCH(look_lanes)(question, edges, clear, met);
 }
 
 }  // namespace blackleaf::detail

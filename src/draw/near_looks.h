@@ -38,7 +38,15 @@ struct VoxelStep {
   std::int32_t bytes = 0, bits = 0;
 
   static constexpr VoxelStep to(const std::array<int, 3>& at) { return {4 * (kRows * at[2] + at[1]), at[0]}; }
-  friend VoxelStep operator+(const VoxelStep& s, const VoxelStep& t) { return {s.bytes + t.bytes, s.bits + t.bits}; }
+  /// To the next voxel below along an axis.
+  static constexpr VoxelStep below(unsigned axis) {
+    std::array<int, 3> at{};
+    at[axis] = -1;
+    return to(at);
+  }
+  friend constexpr VoxelStep operator+(const VoxelStep& s, const VoxelStep& t) {
+    return {s.bytes + t.bytes, s.bits + t.bits};
+  }
 };
 
 /// A look at one voxel.

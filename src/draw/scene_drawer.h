@@ -113,10 +113,13 @@ std::vector<SceneLines> draw_scene(const Scene& scene, const Projection& project
               if (stroke.from != stroke.to) strokes[rank].push_back(stroke);
             });
   std::vector<SceneLines> lines;
-  for (std::size_t rank = 0; rank < strokes.size(); ++rank) {
-    const auto kind = static_cast<LineKind>(rank / solids);
-    if (strokes[rank].empty() || (kind != LineKind::hidden && !options.visible)) continue;
-    lines.push_back({rank % solids, kind, std::move(strokes[rank])});
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    const auto line_kind = static_cast<LineKind>(kind);
+    if (line_kind != LineKind::hidden && !options.visible) continue;
+    for (std::size_t solid = 0; solid < solids; ++solid) {
+      std::vector<Stroke>& drawn = strokes[(kind * solids) + solid];
+      if (!drawn.empty()) lines.push_back({solid, line_kind, std::move(drawn)});
+    }
   }
   return lines;
 }

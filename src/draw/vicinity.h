@@ -55,6 +55,9 @@ class Vicinity {
     return nodes_[x / 2 + 3 * (y / 2) + 9 * (z / 2)].child(static_cast<int>(child));
   }
 
+  /// x fastest.
+  const std::array<Node, 27>& nodes() const { return nodes_; }
+
  private:
   Vicinity() = default;
 
