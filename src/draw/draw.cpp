@@ -23,6 +23,7 @@
 namespace blackleaf {
 namespace {
 
+using detail::ClassedPieces;
 using detail::EdgeFamily;
 using detail::EdgeTask;
 using detail::Interval;
@@ -31,7 +32,6 @@ using detail::NearField;
 using detail::NearLooks;
 using detail::Piece;
 using Families = std::array<EdgeFamily, 3>;
-using Pieces = std::array<std::vector<Piece>, 3>;  // by line class
 
 // All that drawers share.
 struct Sight {
@@ -81,7 +81,7 @@ class Drawer {
     walk(detail::Vicinity(root_, cube), cube);
   }
 
-  Pieces& pieces() { return pieces_; }
+  ClassedPieces& pieces() { return pieces_; }
 
   // A run of edges that anything can hide.
   void operator()(unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
@@ -188,20 +188,16 @@ class Drawer {
   detail::Beam beam_;
   std::array<NearField::Found, 3> found_;  // in the near field, by family
   std::array<NearEdges, 3> free_;          // the clear ones of them that nothing can hide from afar
-  Pieces pieces_{detail::PiecePool::take(), detail::PiecePool::take(), detail::PiecePool::take()};
+  ClassedPieces pieces_{detail::PiecePool::take(), detail::PiecePool::take(), detail::PiecePool::take()};
 };
 
 using Drawers = oneapi::tbb::enumerable_thread_specific<Drawer>;
 
-// All pieces, each class sorted. Their order after sorting does not depend on who found them.
-Pieces gather(Drawers& drawers, const Work& work) {
-  Pieces all;
-  detail::for_each_index(all.size(), {work.threads, {}}, [&](std::size_t k) {
-    std::vector<std::vector<Piece>*> parts;
-    for (Drawer& drawer : drawers) parts.push_back(&drawer.pieces()[k]);
-    all[k] = detail::sorted(parts, work);
-  });
-  return all;
+// All pieces in order, which does not depend on who found them.
+ClassedPieces gather(Drawers& drawers, const Work& work) {
+  std::vector<ClassedPieces*> parts;
+  for (Drawer& drawer : drawers) parts.push_back(&drawer.pieces());
+  return detail::sorted(parts, work);
 }
 
 }  // namespace
@@ -211,7 +207,7 @@ LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   const std::vector<EdgeTask> tasks = detail::edge_tasks(octree);
   Drawers drawers([&] { return Drawer(octree, sight); });
   detail::for_each_index(tasks.size(), work, [&](std::size_t i) { drawers.local().run(tasks[i]); });
-  Pieces pieces = gather(drawers, work);
+  ClassedPieces pieces = gather(drawers, work);
   std::vector<detail::ClassPieces> classes;
   std::array<bool, 3> done{};  // two families can share a line class
   for (const EdgeFamily& family : sight.families) {
