@@ -97,11 +97,10 @@ class Drawer {
     const auto is_like_first = [&](const Node& node) { return node.colour() == around[0].colour(); };
     const bool gray = std::any_of(around.begin(), around.end(), is_gray);
     if (!gray && std::all_of(around.begin(), around.end(), is_like_first)) return;
+    if (gray && cube.level == NearField::kLevel) return look_around(vicinity, cube);
     if (!beam_.enter(cube)) return;
     if (!gray) {
       detail::FeatureEdges<Drawer>(sight_.families, *this).uniform(cube, around);
-    } else if (cube.level == NearField::kLevel) {
-      look_around(vicinity, cube);
     } else {
       for (unsigned octant = 0; octant < 8; ++octant)
         walk(vicinity.child(octant), cube.child(static_cast<int>(octant)));
@@ -111,6 +110,7 @@ class Drawer {
   // The edges that begin at the corners of a near field's cube.
   void look_around(const detail::Vicinity& vicinity, const Cube& cube) {
     NearField field(vicinity, sight_.direction, blocks_);
+    if (!field.begin(sight_.families, found_) || !beam_.enter(cube)) return;
     if (!field.find(sight_.families, sight_.looks, found_)) return;
     for (NearEdges& edges : free_) edges.clear();
     const detail::CornerCube all{0, 0, 0, NearEdges::kSide};

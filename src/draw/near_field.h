@@ -165,11 +165,8 @@ class NearField {
     for (std::size_t i = 0; i < 3; ++i) below_[i] = voxels_below(d[i]);
   }
 
-  /// The edges of the families that may be visible (feature_edges.h), sorted out, by family; whether there are any. Of
-  /// families without looks nothing is found.
-  bool find(const std::array<EdgeFamily, 3>& families, const std::array<std::optional<NearLooks>, 3>& looks,
-            std::array<Found, 3>& found) {
-    // Many a cube has none, as it is behind the solid, or touches it with a side; to see that, a part is enough.
+  /// Finds the edges that may be visible (feature_edges.h), by family; whether there are any. All are `partly` clear.
+  bool begin(const std::array<EdgeFamily, 3>& families, std::array<Found, 3>& found) {
     lay_out_part(true);
     std::array<EdgeRows, 3> edges{};
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -177,12 +174,18 @@ class NearField {
       found[axis].partly.clear();
       edges[axis] = found[axis].partly.rows();
     }
-    const unsigned there = candidates(families, bytes(), VoxelStep::to(below_), edges);
-    if (there == 0) return false;
+    there_ = candidates(families, bytes(), VoxelStep::to(below_), edges);
+    return there_ != 0;
+  }
+
+  /// Sorts them out; whether any are left. Requires: begin(), which has found some; looks of all families that are not
+  /// seen end-on.
+  bool find(const std::array<EdgeFamily, 3>& families, const std::array<std::optional<NearLooks>, 3>& looks,
+            std::array<Found, 3>& found) {
     lay_out_part(false);
     bool any = false;
     for (const EdgeFamily& family : families) {
-      if (!(there >> family.a & 1)) continue;
+      if (!(there_ >> family.a & 1)) continue;
       Found& of = found[family.a];
       const NearLooks& sight = *looks[family.a];
       look({family, bytes(), VoxelStep::below(family.b), sight.first(), sight.others()}, of.partly.rows(),
@@ -248,6 +251,7 @@ class NearField {
   std::array<const NearBlock*, 27> blocks_;  // of the vicinity
   std::uint32_t white_ = 0;                  // a bit for each three of them, side by side along x, that are white
   std::array<int, 3> below_{};               // voxels below the cube
+  unsigned there_ = 0;                       // a bit for each family that has edges
   std::array<std::array<std::uint32_t, kRows>, kRows> rows_;
 };
 
