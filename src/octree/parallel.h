@@ -14,6 +14,7 @@
 
 #include "blackleaf/error.h"
 #include "blackleaf/work.h"
+#include "plain_threads.h"
 
 namespace blackleaf::detail {
 
@@ -63,6 +64,8 @@ void for_each_index(std::size_t count, const Work& work, const Body& body) {
   };
   if (thread_count(work) == 1) {
     for (std::size_t i = 0; i < count; ++i) step(i);
+  } else if (kPlainThreads) {
+    plain_for_each_index(count, thread_count(work), step);
   } else {
     with_threads(work, [&] { oneapi::tbb::parallel_for(std::size_t{0}, count, step); });
   }
@@ -74,6 +77,8 @@ void both(const Work& work, const First& first, const Second& second) {
   if (thread_count(work) == 1) {
     first();
     second();
+  } else if (kPlainThreads) {
+    plain_for_each_index(2, 2, [&](std::size_t i) { i == 0 ? first() : second(); });
   } else {
     with_threads(work, [&] { oneapi::tbb::parallel_invoke(first, second); });
   }
@@ -82,7 +87,7 @@ void both(const Work& work, const First& first, const Second& second) {
 /// Sorts by operator<. Equal elements must not be distinguishable: their order depends on the threads.
 template <class Container>
 void sort(Container& container, const Work& work) {
-  if (thread_count(work) == 1) {
+  if (thread_count(work) == 1 || kPlainThreads) {
     std::sort(container.begin(), container.end());
   } else {
     with_threads(work, [&] { oneapi::tbb::parallel_sort(container.begin(), container.end()); });

@@ -15,6 +15,7 @@
 #include "blackleaf/implicit.h"
 #include "blackleaf/octree_file.h"
 #include "cli/run_command.h"
+#include "reference/memory_limits.h"
 
 namespace blackleaf::test {
 namespace {
@@ -62,18 +63,12 @@ class LargeVolume : public CliTest {
   }
 };
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kLimits = false;  // sanitizers reserve address space by the terabyte
-#else
-constexpr bool kLimits = true;
-#endif
-
 // Far less than the volumes have.
 constexpr rlim_t kLimit = rlim_t{320} << 20;
 
 TEST_F(LargeVolume, RawVolumeBeyondMemory) {
   const Box box{{100, 200, 1000}, {140, 230, 1040}};
-  if (!kLimits) GTEST_SKIP() << "sanitizers need more address space than the limit";
+  if (!kMemoryLimits) GTEST_SKIP() << "sanitizers need more address space than the limit";
   ASSERT_TRUE(make_hollow("large.nrrd", {800, 800, 1100}, box));
   const AddressSpaceLimit limit(kLimit);
   ASSERT_TRUE(limit.works());
@@ -85,7 +80,7 @@ TEST_F(LargeVolume, RawVolumeBeyondMemory) {
 }
 
 TEST_F(LargeVolume, PackedVolumeBeyondMemory) {
-  if (!kLimits) GTEST_SKIP() << "sanitizers need more address space than the limit";
+  if (!kMemoryLimits) GTEST_SKIP() << "sanitizers need more address space than the limit";
   write("large.nrrd", "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 400 400 1600\nencoding: gzip\nendian: little\n\n");
   const gzFile file = gzopen((folder() / "large.nrrd").c_str(), "ab1");
   ASSERT_NE(file, nullptr);

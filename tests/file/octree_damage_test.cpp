@@ -16,6 +16,7 @@
 #include "blackleaf/runs.h"
 #include "file/octree_format.h"
 #include "reference/dense_grid.h"
+#include "reference/memory_limits.h"
 #include "temporary_folder.h"
 
 namespace blackleaf {
@@ -425,7 +426,7 @@ class SmallMemory {
     ::getrlimit(RLIMIT_DATA, &old_);
     rlimit limit = old_;
     limit.rlim_cur = std::size_t{1} << 29;
-    ::setrlimit(RLIMIT_DATA, &limit);
+    if (test::kMemoryLimits) ::setrlimit(RLIMIT_DATA, &limit);
   }
   ~SmallMemory() { ::setrlimit(RLIMIT_DATA, &old_); }
   SmallMemory(const SmallMemory&) = delete;

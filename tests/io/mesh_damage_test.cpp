@@ -20,6 +20,7 @@
 #include "file/temporary_folder.h"
 #include "io/isolated.h"
 #include "reference/dense_grid.h"
+#include "reference/memory_limits.h"
 
 namespace blackleaf {
 namespace {
@@ -230,14 +231,13 @@ TEST(MeshIsolated, EndsOfAllKinds) {
         for (volatile bool forever = true; forever;) continue;
       },
       false);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  answer(
-      [](const auto& to) {
-        to.write("ok", 2);
-        for (std::vector<std::string> all;;) all.emplace_back(std::size_t{1} << 28, 'x');
-      },
-      false);
-#endif
+  if (test::kMemoryLimits)
+    answer(
+        [](const auto& to) {
+          to.write("ok", 2);
+          for (std::vector<std::string> all;;) all.emplace_back(std::size_t{1} << 28, 'x');
+        },
+        false);
 }
 
 std::atomic<bool> told_to_stop{false};
