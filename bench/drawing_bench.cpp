@@ -2,9 +2,11 @@
 // about a lattice point, from (12, -16, 15). length/ballR: what is visible of its edges. svg/SIDE: a drawing of the
 // bunny as SVG text, svg-bytes/SIDE its size; order/SIDE: its strokes joined and ordered for a pen.
 // perspective/SIDE/tT: the bunny seen by an eye in direction (12, -16, 15), two sides of the universe from its middle.
+// draw-speedup/SIDE: how many times faster two threads are. draw-edge/1024: an edge's time, times that at 256.
 // draw-memory/SIDE: the most bytes allocated at once, with the octree.
 #include <bit>
 #include <functional>
+#include <utility>
 
 #include "allocations.h"
 #include "blackleaf/drawing.h"
@@ -16,6 +18,7 @@
 #include "draw/feature_edges.h"
 #include "drawn.h"
 #include "inputs.h"
+#include "paired.h"
 #include "papers/va88.h"
 
 namespace blackleaf::bench {
@@ -29,6 +32,13 @@ void ours(benchmark::State& state, const Octree& octree, const Eigen::Vector3d& 
   const View view(direction);
   for (auto _ : state) benchmark::DoNotOptimize(draw(octree, view, {threads, {}}));
   state.counters["edges"] = static_cast<double>(unit_feature_edges(octree));
+}
+
+// So many drawings in a row.
+auto drawing(int depth, int threads, int times = 1) {
+  return [&octree = bunny(depth), threads, times] {
+    for (int i = 0; i < times; ++i) benchmark::DoNotOptimize(draw(octree, View(kIsometric), {threads, {}}));
+  };
 }
 
 void from_an_eye(benchmark::State& state, const Octree& octree, int threads) {
@@ -125,6 +135,14 @@ void add_drawing() {
       return draw(bunny(depth), View(kIsometric)).strokes.size() * sizeof(Stroke) + bunny(depth).memory_bytes();
     });
   }
+  // Many in a row of what is short, as a thread that sleeps takes a tenth of a millisecond to come.
+  for (const auto& [depth, times] : {std::pair(8, 16), {10, 1}})
+    once("draw-speedup/" + side_name(depth), "ours", "ratio",
+         [=] { return speedup(40, drawing(depth, 1, times), drawing(depth, 2, times)); });
+  once("draw-edge/1024", "ours", "ratio", [] {
+    const auto edges = [](int depth) { return static_cast<double>(unit_feature_edges(bunny(depth))); };
+    return growth(15, 16, drawing(8, 1), drawing(10, 1)) * edges(8) / edges(10);
+  });
   for (const int threads : {1, 2}) {
     const std::string suffix = "/t" + std::to_string(threads);
     for (const int depth : {6, 7, 8, 9, 10}) {

@@ -23,9 +23,9 @@
 namespace blackleaf {
 namespace {
 
-using detail::ClassedPieces;
 using detail::EdgeFamily;
 using detail::EdgeTask;
+using detail::FoundPieces;
 using detail::Interval;
 using detail::NearEdges;
 using detail::NearField;
@@ -81,7 +81,7 @@ class Drawer {
     walk(detail::Vicinity(root_, cube), cube);
   }
 
-  ClassedPieces& pieces() { return pieces_; }
+  std::array<FoundPieces, 3>& pieces() { return pieces_; }
 
   // A run of edges that anything can hide.
   void operator()(unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
@@ -178,7 +178,7 @@ class Drawer {
   };
 
   void keep(const EdgeFamily& family, std::span<const Interval> visible, std::int64_t b, std::int64_t c) {
-    for (const Interval& interval : visible) pieces_[family.line_class].push_back(family.piece(interval, b, c));
+    for (const Interval& interval : visible) pieces_[family.line_class].add(family.piece(interval, b, c));
   }
 
   const Sight& sight_;
@@ -188,14 +188,14 @@ class Drawer {
   detail::Beam beam_;
   std::array<NearField::Found, 3> found_;  // in the near field, by family
   std::array<NearEdges, 3> free_;          // the clear ones of them that nothing can hide from afar
-  ClassedPieces pieces_{detail::PiecePool::take(), detail::PiecePool::take(), detail::PiecePool::take()};
+  std::array<FoundPieces, 3> pieces_;      // by line class
 };
 
 using Drawers = oneapi::tbb::enumerable_thread_specific<Drawer>;
 
 // All pieces in order, which does not depend on who found them.
-ClassedPieces gather(Drawers& drawers, const Work& work) {
-  std::vector<ClassedPieces*> parts;
+std::array<std::vector<Piece>, 3> gather(Drawers& drawers, const Work& work) {
+  std::vector<std::array<FoundPieces, 3>*> parts;
   for (Drawer& drawer : drawers) parts.push_back(&drawer.pieces());
   return detail::sorted(parts, work);
 }
@@ -207,7 +207,7 @@ LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   const std::vector<EdgeTask> tasks = detail::edge_tasks(octree);
   Drawers drawers([&] { return Drawer(octree, sight); });
   detail::for_each_index(tasks.size(), work, [&](std::size_t i) { drawers.local().run(tasks[i]); });
-  ClassedPieces pieces = gather(drawers, work);
+  std::array<std::vector<Piece>, 3> pieces = gather(drawers, work);
   std::vector<detail::ClassPieces> classes;
   std::array<bool, 3> done{};  // two families can share a line class
   for (const EdgeFamily& family : sight.families) {

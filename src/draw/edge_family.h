@@ -41,6 +41,10 @@ using Direction = std::array<std::int64_t, 3>;
 /// A visible piece of an edge on its picture line: [low, high], low < high.
 struct Piece {
   std::int64_t key, low, high;
+
+  /// Not set to anything, so that room for many costs nothing.
+  Piece() {}
+  Piece(std::int64_t on_line, std::int64_t from, std::int64_t to) : key(on_line), low(from), high(to) {}
   /// Of pieces that begin at one place any may come first.
   friend bool operator<(const Piece& p, const Piece& q) { return p.key != q.key ? p.key < q.key : p.low < q.low; }
 };

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "blackleaf/work.h"
@@ -16,9 +17,6 @@
 
 namespace blackleaf::detail {
 
-/// By line class.
-using ClassedPieces = std::array<std::vector<Piece>, 3>;
-
 /// The least and the most of some numbers.
 struct Bounds {
   std::int64_t least = std::numeric_limits<std::int64_t>::max(), most = std::numeric_limits<std::int64_t>::min();
@@ -27,6 +25,17 @@ struct Bounds {
   void add(const Bounds& bounds) { least = std::min(least, bounds.least), most = std::max(most, bounds.most); }
   /// Bits of the numbers, counted from the least. Requires: there are some.
   int bits() const { return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(most - least))); }
+};
+
+/// Pieces of a line class as they are found.
+struct FoundPieces {
+  std::vector<Piece> pieces = PiecePool::take();
+  Bounds keys{}, lows{};
+
+  void add(const Piece& piece) {
+    pieces.push_back(piece);
+    keys.add(piece.key), lows.add(piece.low);
+  }
 };
 
 /// Ranges of (key, low), in order: of keys, or, if there are few keys, of positions on each.
@@ -53,55 +62,46 @@ class PieceRanges {
   std::size_t count_ = 0;
 };
 
-/// All pieces of all parts, each class sorted; the parts are left empty. Pieces are distributed among about as many
-/// ranges as there are pieces, part by part into places known from counting, and each range is sorted: O(n) for pieces
-/// that are spread evenly, O(n log n) in any case.
-inline ClassedPieces sorted(std::span<ClassedPieces* const> parts, const Work& work) {
-  struct Share {  // of a part, of a class
-    Bounds keys{}, lows{};
-    std::vector<std::size_t> place{};  // by range: how many, then where the next goes
-  };
-  ClassedPieces all;
+/// All pieces of all parts, each line class sorted; the parts are left empty. Pieces are distributed among about as
+/// many ranges as there are pieces, part by part into places known from counting, and each range is sorted: O(n) for
+/// pieces that are spread evenly, O(n log n) in any case.
+inline std::array<std::vector<Piece>, 3> sorted(std::span<std::array<FoundPieces, 3>* const> parts, const Work& work) {
+  std::array<std::vector<Piece>, 3> all;
   const std::size_t n = all.size();
-  std::array<PieceRanges, 3> ranges;  // by class
-  std::vector<Share> shares(n * parts.size());
-  const Work quietly{work.threads, {}};
-  const auto for_each_share = [&](const auto& body) {
-    for_each_index(shares.size(), quietly, [&](std::size_t i) { body(shares[i], (*parts[i / n])[i % n], i % n); });
-  };
-
-  for_each_share([](Share& share, const std::vector<Piece>& pieces, std::size_t) {
-    for (const Piece& piece : pieces) share.keys.add(piece.key), share.lows.add(piece.low);
-  });
-  for_each_index(n, quietly, [&](std::size_t k) {
-    std::size_t count = 0;
+  std::array<std::size_t, 3> counts{};  // by class
+  std::array<PieceRanges, 3> ranges;
+  for (std::size_t k = 0; k < n; ++k) {
     Bounds keys, lows;
-    for (std::size_t i = k; i < shares.size(); i += n) {
-      count += (*parts[i / n])[k].size();
-      keys.add(shares[i].keys), lows.add(shares[i].lows);
+    for (const auto* part : parts) {
+      counts[k] += (*part)[k].pieces.size();
+      keys.add((*part)[k].keys), lows.add((*part)[k].lows);
     }
-    all[k] = PiecePool::take();
-    if (count == 0) return;
-    all[k].resize(count);
     // Of many parts each has a counter for every range.
     const int coarser = std::max(0, static_cast<int>(std::bit_width(parts.size())) - 2);
-    ranges[k] = {keys, lows, static_cast<int>(std::bit_width(count)) - coarser};
-  });
-  for_each_share([&](Share& share, const std::vector<Piece>& pieces, std::size_t k) {
-    share.place.resize(ranges[k].count());
-    for (const Piece& piece : pieces) ++share.place[ranges[k].of(piece)];
+    if (counts[k] > 0) ranges[k] = {keys, lows, static_cast<int>(std::bit_width(counts[k])) - coarser};
+  }
+  const Work quietly{work.threads, {}};
+  using Places = std::vector<std::size_t>;  // by range: how many pieces, then where the next goes
+  std::vector<Places> shares(n * parts.size());
+  const auto for_each_share = [&](const auto& body) {
+    for_each_index(shares.size(), quietly,
+                   [&](std::size_t i) { body(shares[i], (*parts[i / n])[i % n].pieces, i % n); });
+  };
+
+  for_each_share([&](Places& places, const std::vector<Piece>& pieces, std::size_t k) {
+    places.resize(ranges[k].count());
+    for (const Piece& piece : pieces) ++places[ranges[k].of(piece)];
   });
   for_each_index(n, quietly, [&](std::size_t k) {
+    if (counts[k] == 0) return;
+    all[k] = PiecePool::take();
+    all[k].resize(counts[k]);
     std::size_t place = 0;
     for (std::size_t range = 0; range < ranges[k].count(); ++range)
-      for (std::size_t i = k; i < shares.size(); i += n) {
-        const std::size_t count = shares[i].place[range];
-        shares[i].place[range] = place;
-        place += count;
-      }
+      for (std::size_t i = k; i < shares.size(); i += n) place += std::exchange(shares[i][range], place);
   });
-  for_each_share([&](Share& share, std::vector<Piece>& pieces, std::size_t k) {
-    for (const Piece& piece : pieces) all[k][share.place[ranges[k].of(piece)]++] = piece;
+  for_each_share([&](Places& places, std::vector<Piece>& pieces, std::size_t k) {
+    for (const Piece& piece : pieces) all[k][places[ranges[k].of(piece)]++] = piece;
     PiecePool::give(pieces);
   });
 
@@ -116,7 +116,7 @@ inline ClassedPieces sorted(std::span<ClassedPieces* const> parts, const Work& w
       tasks.push_back({k, begin, std::min(begin + kAtOnce, ranges[k].count())});
   for_each_index(tasks.size(), quietly, [&](std::size_t i) {
     const auto [k, first, last] = tasks[i];
-    const std::vector<std::size_t>& ends = shares[shares.size() - n + k].place;
+    const Places& ends = shares[shares.size() - n + k];
     const auto at = [&, k = k](std::size_t place) { return all[k].begin() + static_cast<std::ptrdiff_t>(place); };
     for (std::size_t range = first, begin = first == 0 ? 0 : ends[first - 1]; range < last; begin = ends[range++])
       if (ends[range] > begin + 1) std::sort(at(begin), at(ends[range]));
