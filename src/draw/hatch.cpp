@@ -57,7 +57,7 @@ LabelMap labels_of(const Scene& scene, const Work& work) {
     add(solids[i], i, 6);
     for (unsigned side = 0; side < 6; ++side) add(scene.cut_voxels(i, side / 2, side % 2 == 1), i, side);
   }
-  detail::sort(changes, work);
+  detail::sort(changes, work);  // those at one place in any order: they are taken together
 
   std::vector<std::uint8_t> state(solids.size(), 0);
   std::set<std::uint32_t> there;  // solids that have the voxel
