@@ -45,6 +45,10 @@ class View {
 /// A maximal straight visible piece of the drawing, from end to end.
 struct Stroke {
   Eigen::Vector2d from, to;
+
+  /// Not set to anything, so that room for many costs nothing.
+  Stroke() {}
+  Stroke(const Eigen::Vector2d& begin, const Eigen::Vector2d& end) : from(begin), to(end) {}
 };
 
 struct LineDrawing {

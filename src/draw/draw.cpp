@@ -11,11 +11,10 @@
 #include "blackleaf/drawing.h"
 #include "edge_tasks.h"
 #include "feature_edges.h"
+#include "found_pieces.h"
 #include "near_field.h"
 #include "near_looks.h"
-#include "octree/parallel.h"
-#include "piece_pool.h"
-#include "sorted_pieces.h"
+#include "octree/team.h"
 #include "strokes.h"
 #include "vicinity.h"
 #include "visibility.h"
@@ -30,7 +29,7 @@ using detail::Interval;
 using detail::NearEdges;
 using detail::NearField;
 using detail::NearLooks;
-using detail::Piece;
+using detail::Team;
 using Families = std::array<EdgeFamily, 3>;
 
 // All that drawers share.
@@ -58,11 +57,12 @@ struct Sight {
 // (beam.h).
 class Drawer {
  public:
-  Drawer(const Octree& octree, const Sight& sight)
+  Drawer(const Octree& octree, const Sight& sight, const detail::ClassBuckets& buckets)
       : sight_(sight),
         root_(detail::brick_level_root(octree)),
         blocks_(detail::level_words(octree)),
-        beam_(octree, sight.beams) {
+        beam_(octree, sight.beams),
+        pieces_(buckets) {
     for (const EdgeFamily& family : sight.families) {
       // End-on families draw nothing and are never asked; their place is held by another family's walk.
       const bool drawn = family.mode != EdgeFamily::Mode::end_on;
@@ -81,7 +81,7 @@ class Drawer {
     walk(detail::Vicinity(root_, cube), cube);
   }
 
-  std::array<FoundPieces, 3>& pieces() { return pieces_; }
+  FoundPieces& pieces() { return pieces_; }
 
   // A run of edges that anything can hide.
   void operator()(unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
@@ -178,7 +178,7 @@ class Drawer {
   };
 
   void keep(const EdgeFamily& family, std::span<const Interval> visible, std::int64_t b, std::int64_t c) {
-    for (const Interval& interval : visible) pieces_[family.line_class].add(family.piece(interval, b, c));
+    for (const Interval& interval : visible) pieces_.add(family.line_class, family.piece(interval, b, c));
   }
 
   const Sight& sight_;
@@ -188,35 +188,52 @@ class Drawer {
   detail::Beam beam_;
   std::array<NearField::Found, 3> found_;  // in the near field, by family
   std::array<NearEdges, 3> free_;          // the clear ones of them that nothing can hide from afar
-  std::array<FoundPieces, 3> pieces_;      // by line class
+  FoundPieces pieces_;
 };
 
 using Drawers = oneapi::tbb::enumerable_thread_specific<Drawer>;
 
-// All pieces in order, which does not depend on who found them.
-std::array<std::vector<Piece>, 3> gather(Drawers& drawers, const Work& work) {
-  std::vector<std::array<FoundPieces, 3>*> parts;
-  for (Drawer& drawer : drawers) parts.push_back(&drawer.pieces());
-  return detail::sorted(parts, work);
+// Buckets for all pieces of edges of the tasks: by class, about 2^bits of them.
+detail::ClassBuckets buckets_of(const Families& families, const std::vector<EdgeTask>& tasks, int bits) {
+  detail::ClassBuckets buckets;
+  if (tasks.empty()) return buckets;
+  std::array<detail::Bounds, 3> box;
+  for (const EdgeTask& task : tasks) {
+    const std::array<std::int64_t, 3> corner = {task.cube.x, task.cube.y, task.cube.z};
+    for (std::size_t i = 0; i < 3; ++i) box[i].add(corner[i]), box[i].add(corner[i] + task.cube.side());
+  }
+  for (const EdgeFamily& family : families) {
+    if (family.mode == EdgeFamily::Mode::end_on) continue;
+    detail::Bounds keys;  // those of two families in one class are the same
+    for (const std::int64_t b : {box[family.b].least, box[family.b].most})
+      for (const std::int64_t c : {box[family.c].least, box[family.c].most}) keys.add(family.key(b, c));
+    buckets[family.line_class] = {keys, bits};
+  }
+  return buckets;
 }
 
 }  // namespace
 
 LineDrawing draw(const Octree& octree, const View& view, const Work& work) {
   const Sight sight(view.direction());
-  const std::vector<EdgeTask> tasks = detail::edge_tasks(octree);
-  Drawers drawers([&] { return Drawer(octree, sight); });
-  detail::for_each_index(tasks.size(), work, [&](std::size_t i) { drawers.local().run(tasks[i]); });
-  std::array<std::vector<Piece>, 3> pieces = gather(drawers, work);
-  std::vector<detail::ClassPieces> classes;
-  std::array<bool, 3> done{};  // two families can share a line class
+  std::vector<detail::ClassLines> classes;
   for (const EdgeFamily& family : sight.families) {
-    if (family.mode == EdgeFamily::Mode::end_on || done[family.line_class]) continue;
-    done[family.line_class] = true;
-    classes.push_back({pieces[family.line_class], detail::PictureLines(family, view)});
+    const auto is_of_class = [&](const detail::ClassLines& of) { return of.line_class == family.line_class; };
+    if (family.mode == EdgeFamily::Mode::end_on) continue;
+    if (std::none_of(classes.begin(), classes.end(), is_of_class))
+      classes.push_back({family.line_class, detail::PictureLines(family, view)});
   }
-  LineDrawing drawing{view, detail::strokes_of(classes, work)};
-  for (std::vector<Piece>& of_class : pieces) detail::PiecePool::give(of_class);
+  LineDrawing drawing{view, {}};
+  Team::with(work, [&](Team& team) {
+    const std::vector<EdgeTask> tasks = detail::edge_tasks(octree, team);
+    // Of a surface, a bucket has about as many pieces as there are buckets.
+    const detail::ClassBuckets buckets = buckets_of(sight.families, tasks, std::clamp(octree.depth() - 2, 3, 9));
+    Drawers drawers([&] { return Drawer(octree, sight, buckets); });
+    team.for_each_index(tasks.size(), work, [&](std::size_t i) { drawers.local().run(tasks[i]); });
+    std::vector<FoundPieces*> parts;
+    for (Drawer& drawer : drawers) parts.push_back(&drawer.pieces());
+    drawing.strokes = detail::strokes_of(parts, buckets, classes, team);
+  });
   return drawing;
 }
 

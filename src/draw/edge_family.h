@@ -91,11 +91,16 @@ struct EdgeFamily {
                                        : std::numeric_limits<std::int64_t>::max();
   }
 
+  /// The picture line of the edge at (b, c) = (at_b, at_c).
+  std::int64_t key(std::int64_t at_b, std::int64_t at_c) const {
+    return mode == Mode::general ? at_b * d_c - at_c * d_b : at_b;
+  }
+
   /// The picture's name of the positions `visible` of the edge at (b, c) = (at_b, at_c). Requires: mode is not end_on.
   Piece piece(const Interval& visible, std::int64_t at_b, std::int64_t at_c) const {
     assert(mode != Mode::end_on);
     const std::int64_t away = at_c * shift;
-    if (mode == Mode::general) return {at_b * d_c - at_c * d_b, visible.low - away, visible.high - away};
+    if (mode == Mode::general) return {key(at_b, at_c), visible.low - away, visible.high - away};
     const std::int64_t one = position_sign * visible.low - away, other = position_sign * visible.high - away;
     return {at_b, position_sign > 0 ? one : other, position_sign > 0 ? other : one};
   }

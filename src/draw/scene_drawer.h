@@ -23,6 +23,7 @@
 #include "edge_tasks.h"
 #include "feature_edges.h"
 #include "octree/parallel.h"
+#include "octree/team.h"
 #include "priority.h"
 
 namespace blackleaf::detail {
@@ -98,10 +99,12 @@ std::vector<SceneLines> draw_scene(const Scene& scene, const Projection& project
                                    const Work& work) {
   const std::size_t solids = scene.solids().size();
   std::vector<SceneTask<Projection>> tasks;
-  for (std::size_t solid = 0; solid < solids; ++solid)
-    for (const EdgeTask& edges : edge_tasks(scene.solids()[solid])) tasks.push_back({solid, edges, {}});
-  for_each_index(tasks.size(), work,
-                 [&](std::size_t i) { SceneDrawer<Projection>(projection, scene, options, tasks[i]).run(); });
+  Team::with(work, [&](Team& team) {
+    for (std::size_t solid = 0; solid < solids; ++solid)
+      for (const EdgeTask& edges : edge_tasks(scene.solids()[solid], team)) tasks.push_back({solid, edges, {}});
+    team.for_each_index(tasks.size(), work,
+                        [&](std::size_t i) { SceneDrawer<Projection>(projection, scene, options, tasks[i]).run(); });
+  });
 
   const std::size_t kinds = 3;
   std::vector<std::vector<Stroke>> strokes(kinds * solids);

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "blackleaf/drawing.h"
-#include "blackleaf/work.h"
 #include "edge_family.h"
+#include "found_pieces.h"
+#include "octree/team.h"
 #include "screen.h"
 #include "wide.h"
 
@@ -34,12 +35,12 @@ class PictureLines {
       denominator = key_factor_ = std::abs(d_j);
       position_factor_ = EdgeFamily::sign(d_j);
     }
-    u_unit_ = static_cast<double>(denominator) * screen_.u_norm;
-    v_unit_ = static_cast<double>(denominator) * screen_.v_norm;
+    units_ = static_cast<double>(denominator) * Eigen::Vector2d(screen_.u_norm, screen_.v_norm);
   }
 
   Eigen::Vector2d point(std::int64_t key, std::int64_t position) const {
-    return {whole(key, position, screen_.u) / u_unit_, whole(key, position, screen_.v) / v_unit_};
+    const Eigen::Vector2d numerators(whole(key, position, screen_.u), whole(key, position, screen_.v));
+    return numerators.cwiseQuotient(units_);
   }
 
  private:
@@ -57,20 +58,22 @@ class PictureLines {
   Screen screen_;
   unsigned key_axis_, position_axis_;
   std::int64_t key_factor_, position_factor_ = 1;
-  double u_unit_, v_unit_;  // the denominator times the axis' length
+  Eigen::Vector2d units_;  // the denominator times the axes' lengths
 };
 
 /// Unites pieces that overlap or touch and appends one stroke for each maximal piece, in order of (key, low).
 /// Requires: `pieces` is sorted and belongs to the line class.
 void append_strokes(std::span<const Piece> pieces, const PictureLines& picture, std::vector<Stroke>& strokes);
 
-/// The sorted pieces of a line class.
-struct ClassPieces {
-  std::span<const Piece> pieces;
+struct ClassLines {
+  unsigned line_class;
   PictureLines picture;
 };
 
-/// The strokes of all classes, one class after the other.
-std::vector<Stroke> strokes_of(std::span<const ClassPieces> classes, const Work& work);
+/// The strokes of what all parts have found, pieces that overlap or touch united: one class after the other, each in
+/// order of (key, low). The parts' pieces are lost. Requires: all parts have the same buckets. O(n) for n pieces that
+/// are spread evenly over the picture, O(n log n) in any case.
+std::vector<Stroke> strokes_of(std::span<FoundPieces* const> parts, const ClassBuckets& buckets,
+                               std::span<const ClassLines> classes, Team& team);
 
 }  // namespace blackleaf::detail
