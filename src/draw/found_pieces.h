@@ -21,7 +21,6 @@ struct Bounds {
   std::int64_t least = std::numeric_limits<std::int64_t>::max(), most = std::numeric_limits<std::int64_t>::min();
 
   void add(std::int64_t number) { least = std::min(least, number), most = std::max(most, number); }
-  bool any() const { return least <= most; }
   /// Bits of the numbers, counted from the least. Requires: there are some.
   int bits() const { return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(most - least))); }
 };

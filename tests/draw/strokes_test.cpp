@@ -72,7 +72,7 @@ class Strokes {
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       Bounds keys;
       for (const Piece& piece : pieces[k]) keys.add(piece.key);
-      if (keys.any()) buckets[k] = {keys, bits};
+      if (!pieces[k].empty()) buckets[k] = {keys, bits};
     }
     std::vector<std::unique_ptr<FoundPieces>> all;
     for (std::size_t i = 0; i < finders; ++i) all.push_back(std::make_unique<FoundPieces>(buckets));
