@@ -3,14 +3,15 @@
 
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <random>
 
 #include "blackleaf/drawing.h"
 #include "blackleaf/error.h"
 #include "blackleaf/implicit.h"
-#include "reference/dense_drawing.h"
+#include "reference/dense_grid.h"
 #include "reference/placed.h"
+#include "reference/stroke_difference.h"
+#include "stroke_laws.h"
 
 namespace blackleaf {
 namespace {
@@ -176,22 +177,7 @@ TEST(Drawing, StrokesCannotBeJoined) {
     SCOPED_TRACE(d.transpose());
     const LineDrawing drawing = draw(solid, View(d));
     ASSERT_GT(drawing.strokes.size(), 100u);
-    using Place = std::pair<std::int64_t, std::int64_t>;
-    std::map<Place, std::vector<Eigen::Vector2d>> ends;  // directions of the strokes that end at a place
-    const auto place = [](const Eigen::Vector2d& p) {
-      return Place{std::llround(p[0] * 1e9), std::llround(p[1] * 1e9)};
-    };
-    for (const Stroke& s : drawing.strokes) {
-      const Eigen::Vector2d along = s.to - s.from;
-      ASSERT_GT(along.norm(), 0);
-      ends[place(s.from)].push_back(along.normalized());
-      ends[place(s.to)].push_back(-along.normalized());
-    }
-    for (const auto& [where, directions] : ends)
-      for (std::size_t i = 0; i < directions.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-          ASSERT_GT(std::abs(directions[i][0] * directions[j][1] - directions[i][1] * directions[j][0]), 1e-3)
-              << where.first << " " << where.second;
+    expect_cannot_be_joined(drawing.strokes, 1e-3);
   }
 }
 
@@ -201,12 +187,7 @@ TEST(Drawing, ThreadsDoNotMatter) {
     const auto one = draw(solid, View(d), Work{1, {}}).strokes;
     for (const int threads : {0, 2, 5}) {
       SCOPED_TRACE(threads);
-      const auto many = draw(solid, View(d), Work{threads, {}}).strokes;
-      ASSERT_EQ(many.size(), one.size());
-      for (std::size_t i = 0; i < one.size(); ++i) {
-        ASSERT_EQ(many[i].from, one[i].from);
-        ASSERT_EQ(many[i].to, one[i].to);
-      }
+      expect_same(draw(solid, View(d), Work{threads, {}}).strokes, one);
     }
   }
 }

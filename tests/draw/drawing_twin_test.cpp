@@ -6,6 +6,7 @@
 #include "blackleaf/drawing.h"
 #include "directions.h"
 #include "reference/dense_drawing.h"
+#include "reference/stroke_difference.h"
 
 namespace blackleaf {
 namespace {

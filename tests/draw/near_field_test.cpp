@@ -17,6 +17,7 @@
 #include "draw/visibility.h"
 #include "reference/dense_grid.h"
 #include "reference/every_kernel.h"
+#include "stroke_laws.h"
 
 namespace blackleaf {
 namespace {
@@ -71,12 +72,7 @@ void expect_like_one_by_one(const Octree& octree, const Eigen::Vector3d& directi
   SCOPED_TRACE("view " + show(direction));
   const View view(direction);
   const std::vector<Stroke> expected = OneByOne::strokes(octree, view);
-  reference::EveryKernel().run([&] {
-    const std::vector<Stroke> drawn = draw(octree, view).strokes;
-    ASSERT_EQ(drawn.size(), expected.size());
-    for (std::size_t i = 0; i < drawn.size(); ++i)
-      ASSERT_TRUE(drawn[i].from == expected[i].from && drawn[i].to == expected[i].to) << i;
-  });
+  reference::EveryKernel().run([&] { expect_same(draw(octree, view).strokes, expected); });
 }
 
 TEST(NearField, RandomSolids) {

@@ -7,15 +7,16 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <random>
 
 #include "blackleaf/error.h"
 #include "blackleaf/implicit.h"
-#include "reference/dense_drawing.h"
+#include "reference/dense_grid.h"
 #include "reference/placed.h"
+#include "reference/stroke_difference.h"
+#include "stroke_laws.h"
 
 namespace blackleaf {
 namespace {
@@ -25,14 +26,6 @@ using reference::difference;
 using reference::placed;
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-void expect_same(const std::vector<Stroke>& a, const std::vector<Stroke>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_EQ(a[i].from, b[i].from);
-    ASSERT_EQ(a[i].to, b[i].to);
-  }
-}
 
 ErrorCode refusal(const std::function<void()>& action) {
   try {
@@ -275,22 +268,7 @@ TEST(Perspective, StrokesCannotBeJoined) {
     SCOPED_TRACE(eye.transpose());
     const LineDrawing drawing = draw(solid, Perspective(eye, {64, 64, 64}));
     ASSERT_GT(drawing.strokes.size(), 100u);
-    using Place = std::pair<std::int64_t, std::int64_t>;
-    std::map<Place, std::vector<Eigen::Vector2d>> ends;  // directions of the strokes that end at a place
-    const auto place = [](const Eigen::Vector2d& p) {
-      return Place{std::llround(p[0] * 1e9), std::llround(p[1] * 1e9)};
-    };
-    for (const Stroke& s : drawing.strokes) {
-      const Eigen::Vector2d along = s.to - s.from;
-      ASSERT_GT(along.norm(), 0);
-      ends[place(s.from)].push_back(along.normalized());
-      ends[place(s.to)].push_back(-along.normalized());
-    }
-    for (const auto& [where, found] : ends)
-      for (std::size_t i = 0; i < found.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-          ASSERT_GT(std::abs(found[i][0] * found[j][1] - found[i][1] * found[j][0]), 1e-4)
-              << where.first << " " << where.second;
+    expect_cannot_be_joined(drawing.strokes, 1e-4);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "blackleaf/scene.h"
 #include "reference/dense_scene.h"
+#include "reference/stroke_difference.h"
 
 namespace blackleaf {
 

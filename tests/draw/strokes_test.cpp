@@ -11,6 +11,7 @@
 
 #include "blackleaf/drawing.h"
 #include "octree/team.h"
+#include "stroke_laws.h"
 
 namespace blackleaf {
 namespace {
@@ -90,12 +91,6 @@ class Strokes {
   View view_;
   std::vector<ClassLines> classes_;
 };
-
-void expect_same(const std::vector<Stroke>& strokes, const std::vector<Stroke>& expected) {
-  ASSERT_EQ(strokes.size(), expected.size());
-  for (std::size_t i = 0; i < strokes.size(); ++i)
-    ASSERT_TRUE(strokes[i].from == expected[i].from && strokes[i].to == expected[i].to) << i;
-}
 
 TEST(FoundPieces, AsIfSorted) {
   const std::vector<Shape> shapes = {{1, 1000, 3, 300},

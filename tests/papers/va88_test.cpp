@@ -7,7 +7,8 @@
 
 #include "blackleaf/drawing.h"
 #include "blackleaf/implicit.h"
-#include "reference/dense_drawing.h"
+#include "reference/dense_grid.h"
+#include "reference/stroke_difference.h"
 
 namespace blackleaf {
 namespace {

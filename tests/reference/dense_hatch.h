@@ -34,11 +34,10 @@ struct DenseCutScene {
 
 class DenseHatch {
  public:
-  using Vector = std::array<Wide, 3>;
   using Layers = DenseScene::Layers;
 
   static Layers lines(const DenseCutScene& scene, const std::array<std::int64_t, 3>& d, const HatchOptions& options) {
-    DenseHatch twin(scene, {d[0], d[1], d[2]});
+    DenseHatch twin(scene, d);
     for (std::size_t n = 0; n < 3; ++n) {
       if (d[n] == 0) continue;
       if (options.faces > 0 && options.tone[n] > 0) twin.draw(n, false, false, options.faces * options.tone[n]);
@@ -58,41 +57,33 @@ class DenseHatch {
     bool cut = false;
   };
 
-  DenseHatch(const DenseCutScene& scene, const Vector& d) : scene_(scene), d_(d), n_(scene.kept.front().side()) {
-    const Vector up = d[0] == 0 && d[1] == 0 ? Vector{0, 1, 0} : Vector{0, 0, 1};
-    right_ = cross(up, d);
-    up_ = cross(d, right_);
-  }
-
-  static Vector cross(const Vector& p, const Vector& q) {
-    return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-  }
-  static Wide dot(const Vector& p, const Vector& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
+  DenseHatch(const DenseCutScene& scene, const std::array<std::int64_t, 3>& d)
+      : scene_(scene), view_(d), n_(scene.kept.front().side()) {}
 
   void draw(std::size_t n, bool cut, bool odd, double distance) {
     const std::size_t b = (n + 1) % 3, c = (n + 2) % 3;
-    Vector h{};
+    WideVector h{};
     h[b] = h[c] = 1;
-    const bool rises = (dot(right_, h) > 0) == (dot(up_, h) > 0);
+    const bool rises = (dot(view_.right, h) > 0) == (dot(view_.up, h) > 0);
     if (rises != (cut && !odd)) h[c] = -1;
-    Vector w = cross(h, d_);
+    WideVector w = cross(h, view_.d);
     const Wide common = gcd_wide(gcd_wide(w[0], w[1]), w[2]);
     for (Wide& component : w) component /= common;
     const double length = std::sqrt(static_cast<double>(dot(w, w)));
     const Wide m = std::max<std::int64_t>(1, std::llround(distance * length * 256));
     const Wide reach = 512 * n_ * (absolute(w[0]) + absolute(w[1]) + absolute(w[2]));
     for (Wide j = -reach / (2 * m) - 1; j <= reach / (2 * m) + 1; ++j)
-      draw_line(n, cut, odd, w, dot(right_, h) != 0 ? right_ : up_, 2 * m * j + 1);
+      draw_line(n, cut, odd, w, dot(view_.right, h) != 0 ? view_.right : view_.up, 2 * m * j + 1);
   }
 
   // The line w.p = k / 512, with places on it named by s.p.
-  void draw_line(std::size_t n, bool cut, bool odd, const Vector& w, const Vector& s, Wide k) {
+  void draw_line(std::size_t n, bool cut, bool odd, const WideVector& w, const WideVector& s, Wide k) {
     std::set<Fraction> places;
     for (int x = 0; x <= n_; ++x)
       for (int y = 0; y <= n_; ++y)
         for (int z = 0; z <= n_; ++z)
           for (std::size_t j = 0; j < 3; ++j) {
-            const Vector v = {x, y, z};
+            const WideVector v = {x, y, z};
             const Wide part = k - 512 * dot(w, v), all = 512 * w[j];  // the edge is crossed at part / all of it
             if (w[j] == 0 || (part < 0) != (all < 0) || absolute(part) > absolute(all)) continue;
             const Wide sign = all < 0 ? -1 : 1;
@@ -125,51 +116,48 @@ class DenseHatch {
   }
 
   // The point p / q with w.p = k / 512, s.p as said and p_n = 0.
-  std::pair<Vector, Wide> point(std::size_t n, const Vector& w, const Vector& s, Wide k, const Fraction& at) const {
+  std::pair<WideVector, Wide> point(std::size_t n, const WideVector& w, const WideVector& s, Wide k,
+                                    const Fraction& at) const {
     const std::size_t b = (n + 1) % 3, c = (n + 2) % 3;
     const Wide determinant = w[b] * s[c] - w[c] * s[b];
     Wide q = 512 * at.denominator * determinant;
-    Vector p{};
+    WideVector p{};
     p[b] = k * at.denominator * s[c] - w[c] * at.numerator * 512;
     p[c] = w[b] * at.numerator * 512 - s[b] * k * at.denominator;
     if (q < 0) q = -q, p[b] = -p[b], p[c] = -p[c];
     return {p, q};
   }
 
-  Eigen::Vector2d on_screen(std::size_t n, const Vector& w, const Vector& s, Wide k, const Fraction& at) const {
+  Eigen::Vector2d on_screen(std::size_t n, const WideVector& w, const WideVector& s, Wide k, const Fraction& at) const {
     const auto [p, q] = point(n, w, s, k, at);
-    const auto scaled = [&, &p = p, &q = q](const Vector& axis) {
-      return static_cast<double>(dot(axis, p)) / static_cast<double>(q) /
-             std::sqrt(static_cast<double>(dot(axis, axis)));
-    };
-    return {scaled(right_), scaled(up_)};
+    return view_.on_screen({dot(view_.right, p), dot(view_.up, p), q});
   }
 
-  std::optional<Face> seen(std::size_t n, const Vector& w, const Vector& s, Wide k, const Fraction& at) const {
+  std::optional<Face> seen(std::size_t n, const WideVector& w, const WideVector& s, Wide k, const Fraction& at) const {
     auto [p, q] = point(n, w, s, k, at);
     if (const Wide divisor = gcd_wide(gcd_wide(p[0], p[1]), gcd_wide(p[2], q)); divisor > 1) {
       for (Wide& component : p) component /= divisor;
       q /= divisor;
     }
-    Wide times = 1;
-    for (const Wide component : d_) times *= component == 0 ? 1 : absolute(component);
+    const Wide times = view_.times();
     std::map<Wide, std::size_t> crossings;  // times in 1 / (q times), and the axis of the plane
     for (std::size_t i = 0; i < 3; ++i)
-      for (int plane = 0; plane <= n_ && d_[i] != 0; ++plane) crossings[(plane * q - p[i]) * (times / d_[i])] = i;
+      for (int plane = 0; plane <= n_ && view_.d[i] != 0; ++plane)
+        crossings[(plane * q - p[i]) * (times / view_.d[i])] = i;
     for (auto near = crossings.rbegin(); std::next(near) != crossings.rend(); ++near) {
       const Wide middle = near->first + std::next(near)->first;
       std::array<int, 3> voxel{};
       for (std::size_t i = 0; i < 3; ++i)
-        voxel[i] = static_cast<int>(floor_div(p[i] * 2 * times + middle * d_[i], 2 * times * q));
+        voxel[i] = static_cast<int>(floor_div(p[i] * 2 * times + middle * view_.d[i], 2 * times * q));
       for (std::size_t solid = 0; solid < scene_.kept.size(); ++solid)
         if (scene_.kept[solid].at(voxel[0], voxel[1], voxel[2]))
-          return Face{solid, near->second, scene_.is_cut(solid, voxel, near->second, d_[near->second] > 0)};
+          return Face{solid, near->second, scene_.is_cut(solid, voxel, near->second, view_.d[near->second] > 0)};
     }
     return std::nullopt;
   }
 
   const DenseCutScene& scene_;
-  Vector d_, right_, up_;
+  DenseView view_;
   int n_;
   Layers layers_;
 };

@@ -82,7 +82,7 @@ class DensePerspective {
     for (at[0] = 0; at[0] <= n; ++at[0])
       for (at[1] = 0; at[1] <= n; ++at[1])
         for (at[2] = 0; at[2] <= n; ++at[2])
-          if (DenseScene::is_feature(solids_[solid], axis, at)) draw_edge(solid, axis, at);
+          if (is_feature(solids_[solid], axis, at)) draw_edge(solid, axis, at);
   }
 
   void draw_edge(std::size_t solid, std::size_t axis, const std::array<int, 3>& at) {
