@@ -24,10 +24,14 @@ class EndTree {
                std::vector<std::pair<double, std::uint32_t>>& found) const;
 
  private:
-  // Implicit balanced tree: node k has children 2k + 1 and 2k + 2; leaves hold up to kLeaf points.
+  struct Entry {
+    Eigen::Vector2d point;
+    std::uint32_t index;
+  };
+  // Implicit balanced tree: node k has children 2k + 1 and 2k + 2; leaves hold up to kLeaf points, those left first.
   struct Node {
     Eigen::Vector2d low, high;         // around its points
-    std::uint32_t begin = 0, end = 0;  // in order_
+    std::uint32_t begin = 0, end = 0;  // in entries_
     std::uint32_t left = 0;            // points not taken out
   };
   static constexpr std::uint32_t kLeaf = 8;
@@ -40,9 +44,8 @@ class EndTree {
   template <class Visit, class Bound>
   void search(std::uint32_t node, const Eigen::Vector2d& to, const Visit& visit, const Bound& bound) const;
 
-  std::span<const Eigen::Vector2d> points_;
-  std::vector<std::uint32_t> order_, leaf_of_;
-  std::vector<bool> gone_;
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> leaf_of_;  // by index
   std::vector<Node> nodes_;
 };
 

@@ -69,12 +69,14 @@ std::vector<Eigen::Vector2d> points_of(std::span<const Ends> chains) {
   return points;
 }
 
-// 2-opt and Or-opt on an array of visits. An *end* is 2 chain for the first point of a chain, 2 chain + 1 for its last.
+// 2-opt and Or-opt on an array of visits. An *end* is 2 chain for the first point of a chain, 2 chain + 1 for its last;
+// a visit is the end by which it enters.
 class Improver {
  public:
-  Improver(std::span<const Ends> chains, const Eigen::Vector2d& start, std::vector<Visit>& tour)
-      : points_(points_of(chains)), start_(start), tour_(tour), place_(tour.size()), waiting_(points_.size(), false) {
-    for (std::size_t i = 0; i < tour_.size(); ++i) place_[tour_[i].chain] = i;
+  Improver(std::span<const Ends> chains, const Eigen::Vector2d& start, const std::vector<Visit>& tour)
+      : points_(points_of(chains)), start_(start), place_(tour.size()), waiting_(points_.size(), false) {
+    for (const Visit visit : tour) tour_.push_back(2 * visit.chain + (visit.reversed ? 1 : 0));
+    note_places(0, tour_.size());
     const EndTree tree(points_);
     near_.resize(points_.size() * kNear);
     std::vector<std::pair<double, std::uint32_t>> found;
@@ -103,6 +105,12 @@ class Improver {
     }
   }
 
+  std::vector<Visit> tour() const {
+    std::vector<Visit> tour;
+    for (const std::uint32_t end : tour_) tour.push_back({end / 2, end % 2 == 1});
+    return tour;
+  }
+
  private:
   static constexpr std::size_t kNear = 8;
   static constexpr std::size_t kCompact = 1 << 20;
@@ -118,7 +126,7 @@ class Improver {
     bool turned = false;             // in the reverse order and direction
   };
 
-  std::uint32_t left(std::size_t i) const { return 2 * tour_[i].chain + (tour_[i].reversed ? 1u : 0u); }
+  std::uint32_t left(std::size_t i) const { return tour_[i]; }
   std::uint32_t right(std::size_t i) const { return left(i) ^ 1; }
   const Eigen::Vector2d& before(std::size_t i) const { return i == 0 ? start_ : points_[right(i - 1)]; }
   // The way from p to visit i, which may be the tour's end.
@@ -188,7 +196,7 @@ class Improver {
     const auto at = [&](std::size_t i) { return tour_.begin() + static_cast<std::ptrdiff_t>(i); };
     if (move.turned) {
       std::reverse(at(move.begin), at(move.end));
-      for (std::size_t i = move.begin; i < move.end; ++i) tour_[i].reversed = !tour_[i].reversed;
+      for (std::size_t i = move.begin; i < move.end; ++i) tour_[i] ^= 1;
     }
     std::size_t low = move.begin, high = move.end;
     if (move.to < move.begin) {
@@ -198,7 +206,7 @@ class Improver {
       high = move.to;
       std::rotate(at(move.begin), at(move.end), at(move.to));
     }
-    for (std::size_t i = low; i < high; ++i) place_[tour_[i].chain] = i;
+    note_places(low, high);
     // The new gaps lie at the sides of what moved and where it was taken out.
     const std::size_t length = move.end - move.begin;
     for (const std::size_t gap : {low, low + length, high - length, high}) {
@@ -207,12 +215,16 @@ class Improver {
     }
   }
 
+  void note_places(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) place_[tour_[i] / 2] = static_cast<std::uint32_t>(i);
+  }
+
   std::vector<Eigen::Vector2d> points_;  // by end
   Eigen::Vector2d start_;
-  std::vector<Visit>& tour_;
-  std::vector<std::size_t> place_;   // of a chain in the tour
-  std::vector<std::uint32_t> near_;  // kNear a end, the nearest first
-  std::vector<bool> waiting_;        // in the queue
+  std::vector<std::uint32_t> tour_;   // visits
+  std::vector<std::uint32_t> place_;  // of a chain in the tour
+  std::vector<std::uint32_t> near_;   // kNear a end, the nearest first
+  std::vector<bool> waiting_;         // in the queue
   std::vector<std::uint32_t> queue_;
 };
 
@@ -245,7 +257,19 @@ std::vector<Visit> nearest_neighbour_tour(std::span<const Ends> chains, const Ei
 }
 
 void improve(std::span<const Ends> chains, const Eigen::Vector2d& start, std::vector<Visit>& tour) {
-  if (tour.size() > 1) Improver(chains, start, tour).run();
+  if (tour.size() < 2) return;
+  // Numbered as they come in the tour: what is near on the page is near in memory then.
+  std::vector<Ends> in_order;
+  std::vector<Visit> visits;
+  for (const Visit visit : tour) {
+    visits.push_back({static_cast<std::uint32_t>(in_order.size()), visit.reversed});
+    in_order.push_back(chains[visit.chain]);
+  }
+  Improver improver(in_order, start, visits);
+  improver.run();
+  std::vector<Visit> better = improver.tour();
+  for (Visit& visit : better) visit.chain = tour[visit.chain].chain;
+  tour = std::move(better);
 }
 
 std::vector<Visit> short_tour(std::span<const Ends> chains, const Eigen::Vector2d& start) {
