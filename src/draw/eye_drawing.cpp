@@ -117,11 +117,11 @@ class FromEye {
     using Edge = EyeEdge;
     using Interval = EyeWalk::Interval;
 
-    Sight(const FromEye& projection, const Octree& all, const SceneOptions&)
+    Sight(const FromEye& projection, const Scene& scene, const SceneOptions&)
         : eye_(projection.eye_),
           window_(projection.window_),
-          walk_(all, eye_, EyeWalk::Way::to_eye),
-          backward_walk_(all, eye_, EyeWalk::Way::away) {}
+          walk_(scene.all(), eye_, EyeWalk::Way::to_eye),
+          backward_walk_(scene.all(), eye_, EyeWalk::Way::away) {}
 
     template <class Sink>
     void find(detail::EdgeChoice choice, const detail::EdgeTask& task, Sink& sink) {
@@ -142,6 +142,10 @@ class FromEye {
       return clipped_ ? window_.clip(edge, run) : run;
     }
     const std::vector<Interval>& visible(const Edge& edge, const Interval& run) { return walk_.visible(edge, run); }
+    template <class Sink>
+    bool find_visible(const detail::EdgeTask&, const Sink&) {
+      return false;
+    }
     const std::vector<Interval>& outline(const Edge& edge, const Interval& visible) {
       return backward_walk_.visible(edge, visible);
     }

@@ -8,12 +8,18 @@
 //   Ranked                              the RankedPiece of its picture lines
 //   kLineClasses                        how many classes of picture lines it has
 //   stroke(line_class, key, low, high)  a piece of a picture line as a Stroke
-//   Sight                               made from (projection, union of all solids, options), for one thread at a time:
+//   Sight                               made from (projection, scene, options), for one thread at a time:
 //     find(choice, edges, sink)         calls sink(axis, a0, a1, b, c) for runs of feature edges of a task
 //     edge(axis, b, c), run(edge, a0, a1)   what it calls such a run: an edge, and an interval on it, empty if out of
-//     view visible(edge, interval)           the visible intervals, valid until the next call outline(edge, interval)
-//     those of a visible one that nothing is close behind line_class(edge), piece(edge, interval, rank)
+//                                       view
+//     visible(edge, interval)           the visible intervals, valid until the next call
+//     find_visible(edges, sink)         of the only solid there is: if true, it has called sink(edge, visible interval)
+//                                       for all that is visible of a task's edges
+//     outline(edge, visible interval)   the parts of it that nothing is close behind
+//     line_class(edge), piece(edge, interval, rank)
 #pragma once
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
 
 #include <array>
 #include <cstdint>
@@ -39,41 +45,49 @@ struct SceneTask {
 template <class Projection>
 class SceneDrawer {
  public:
-  SceneDrawer(const Projection& projection, const Scene& scene, const SceneOptions& options,
-              SceneTask<Projection>& task)
-      : solids_(scene.solids().size()), options_(options), task_(task), sight_(projection, scene.all(), options) {}
+  using Sight = typename Projection::Sight;
+
+  SceneDrawer(Sight& sight, const Scene& scene, const SceneOptions& options, SceneTask<Projection>& task)
+      : sight_(sight), solids_(scene.solids().size()), options_(options), task_(task) {}
 
   void run() {
-    ask_ = true;
-    sight_.find(solids_ == 1 ? EdgeChoice::candidates : EdgeChoice::not_blocked_at_once, task_.edges, *this);
-    ask_ = false;
-    if (options_.hidden) sight_.find(EdgeChoice::all, task_.edges, *this);
-  }
-
-  void operator()(unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
-    const auto edge = sight_.edge(axis, b, c);
-    const auto run = sight_.run(edge, a0, a1);
-    if (!(run.low < run.high)) return;
-    if (!ask_) return add(edge, LineKind::hidden, run);
-    for (const auto& visible : sight_.visible(edge, run)) {
+    const auto see = [&](const auto& edge, const auto& visible) {
       add(edge, LineKind::visible, visible);
-      if (!options_.outline) continue;
+      if (!options_.outline) return;
       for (const auto& outline : sight_.outline(edge, visible)) add(edge, LineKind::outline, outline);
+    };
+    if (solids_ > 1 || !sight_.find_visible(task_.edges, see)) {
+      find(solids_ == 1 ? EdgeChoice::candidates : EdgeChoice::not_blocked_at_once,
+           [&](const auto& edge, const auto& run) {
+             for (const auto& visible : sight_.visible(edge, run)) see(edge, visible);
+           });
     }
+    if (options_.hidden)
+      find(EdgeChoice::all, [&](const auto& edge, const auto& run) { add(edge, LineKind::hidden, run); });
   }
 
  private:
+  // Calls sink(edge, run) for runs of the task's edges that are in view.
+  template <class Sink>
+  void find(EdgeChoice choice, const Sink& sink) {
+    const auto found = [&](unsigned axis, std::int32_t a0, std::int32_t a1, std::int32_t b, std::int32_t c) {
+      const auto edge = sight_.edge(axis, b, c);
+      const auto run = sight_.run(edge, a0, a1);
+      if (run.low < run.high) sink(edge, run);
+    };
+    sight_.find(choice, task_.edges, found);
+  }
+
   template <class Edge, class Interval>
   void add(const Edge& edge, LineKind kind, const Interval& where) {
     const auto rank = static_cast<std::uint32_t>(static_cast<std::size_t>(kind) * solids_ + task_.solid);
     task_.pieces[sight_.line_class(edge)].push_back(sight_.piece(edge, where, rank));
   }
 
+  Sight& sight_;
   std::size_t solids_;
   const SceneOptions& options_;
   SceneTask<Projection>& task_;
-  typename Projection::Sight sight_;
-  bool ask_ = true;  // whether edges are to be looked at, or taken as they are
 };
 
 /// The pieces of all tasks of one line class, sorted. Their order does not depend on how they were found.
@@ -99,11 +113,13 @@ std::vector<SceneLines> draw_scene(const Scene& scene, const Projection& project
                                    const Work& work) {
   const std::size_t solids = scene.solids().size();
   std::vector<SceneTask<Projection>> tasks;
+  using Sight = typename Projection::Sight;
+  oneapi::tbb::enumerable_thread_specific<Sight> sights([&] { return Sight(projection, scene, options); });
   Team::with(work, [&](Team& team) {
     for (std::size_t solid = 0; solid < solids; ++solid)
       for (const EdgeTask& edges : edge_tasks(scene.solids()[solid], team)) tasks.push_back({solid, edges, {}});
     team.for_each_index(tasks.size(), work,
-                        [&](std::size_t i) { SceneDrawer<Projection>(projection, scene, options, tasks[i]).run(); });
+                        [&](std::size_t i) { SceneDrawer(sights.local(), scene, options, tasks[i]).run(); });
   });
 
   const std::size_t kinds = 3;

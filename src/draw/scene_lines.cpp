@@ -4,6 +4,7 @@
 
 #include "blackleaf/error.h"
 #include "blackleaf/scene.h"
+#include "drawer.h"
 #include "scene_drawer.h"
 #include "strokes.h"
 #include "visibility.h"
@@ -22,8 +23,8 @@ class Parallel {
   using Ranked = detail::RankedPiece<std::int64_t, std::int64_t>;
   static constexpr std::size_t kLineClasses = 3;
 
-  explicit Parallel(const View& view) : direction_(view.direction()), families_(families_of(direction_)) {
-    for (const EdgeFamily& family : families_)  // two families can share a line class
+  explicit Parallel(const View& view) : sight_(view.direction()) {
+    for (const EdgeFamily& family : sight_.families)  // two families can share a line class
       if (family.mode != EdgeFamily::Mode::end_on && !lines_[family.line_class])
         lines_[family.line_class].emplace(family, view);
   }
@@ -37,12 +38,13 @@ class Parallel {
    public:
     struct Edge {
       unsigned axis;
-      std::int32_t b, c;
+      std::int64_t b, c;
     };
 
-    Sight(const Parallel& projection, const Octree& all, const SceneOptions& options)
-        : families_(projection.families_) {
-      const detail::Direction& d = projection.direction_;
+    Sight(const Parallel& projection, const Scene& scene, const SceneOptions& options)
+        : families_(projection.sight_.families), drawer_(scene.solids()[0], projection.sight_) {
+      const Octree& all = scene.all();
+      const detail::Direction& d = projection.sight_.direction;
       backward_ = families_of({-d[0], -d[1], -d[2]});
       const double length = std::sqrt(static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
       for (std::size_t i = 0; i < 3; ++i) {
@@ -68,6 +70,13 @@ class Parallel {
     const std::vector<Interval>& visible(const Edge& edge, const Interval& run) {
       return walks_[edge.axis].visible(run, edge.b, edge.c);
     }
+    template <class Sink>
+    bool find_visible(const detail::EdgeTask& task, const Sink& sink) {
+      drawer_.kept().visible.clear();
+      drawer_.run(task);
+      for (const auto& [edge, visible] : drawer_.kept().visible) sink(edge, visible);
+      return true;
+    }
     const std::vector<Interval>& outline(const Edge& edge, const Interval& visible) {
       return backward_walks_[edge.axis].visible(visible, edge.b, edge.c);
     }
@@ -78,14 +87,21 @@ class Parallel {
     }
 
    private:
+    struct Keep {
+      void operator()(const EdgeFamily& family, const Interval& interval, std::int64_t b, std::int64_t c) {
+        visible.push_back({{family.a, b, c}, interval});
+      }
+      std::vector<std::pair<Edge, Interval>> visible;
+    };
+
     const Families& families_;
     Families backward_ = families_;
+    detail::Drawer<Keep> drawer_;
     std::vector<detail::VisibilityWalk> walks_, backward_walks_;
   };
 
  private:
-  detail::Direction direction_;
-  Families families_;
+  detail::ParallelSight sight_;
   std::array<std::optional<detail::PictureLines>, kLineClasses> lines_;
 };
 
