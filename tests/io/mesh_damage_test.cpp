@@ -184,6 +184,10 @@ TEST_F(MeshDamage, ChangedBytes) {
 
 // Many threads that read and allocate while others fork: each child gets a heap in order, each reader its own answer.
 TEST_F(MeshDamage, ManyThreadsAtOnce) {
+#ifdef __SANITIZE_ADDRESS__
+  // gcc 12's does not hold its allocator's locks across a fork, so a child may wait for a thread that it has not.
+  GTEST_SKIP() << "the address sanitizer's allocator cannot be used after a fork beside other threads";
+#endif
   const std::string whole = written("whole.ply");
   test::write_file(folder_ / "cut.ply", replaced(whole, "element face ", "element face 9"));
   const std::size_t wanted = read_mesh(folder_ / "whole.ply").triangles.size();
