@@ -29,26 +29,27 @@ class VolumeScan {
     Piece now = piece(first, bricks_.first_group());
     while (now.strip < last) {
       if (now.group == bricks_.first_group()) begin.push_back(gray.size());
-      // Sixteen rows in step are more than hardware foresees, and it stops at every page: ask for what comes next.
-      const Piece later = next(now);
+      // Sixteen rows in step are more than hardware foresees, and it stops at every page: ask for what comes after the
+      // next piece. Into the second-level cache: of the first one's, some processors await few lines at a time.
+      const Piece soon = next(now), later = next(soon);
       for (unsigned number = 0; number < 16; ++number) {
         if (const T* const ahead = row(later, number))
-          for (std::int64_t i = 0; i < later.x1 - later.x0; i += kLine) __builtin_prefetch(ahead + i);
+          for (std::int64_t i = 0; i < later.x1 - later.x0; i += kLine) __builtin_prefetch(ahead + i, 0, 2);
         if (const T* const here = row(now, number))
           row_words(here, now.x0, now.x1, inside_, rows[number].data());
         else
           rows[number].fill(0);
       }
       bricks_.set(now.strip, now.group, now.groups, rows, gray, begin.back());
-      now = later;
+      now = soon;
     }
     for (std::int64_t strip = first; strip < last; ++strip)
       bricks_.set_gray(strip, gray.data() + begin[static_cast<std::size_t>(strip - first)]);
   }
 
  private:
-  // A strip is read in pieces of at most 2 KiB a row. While one piece is tested the next is fetched, and both together
-  // must fit the first-level cache or nearly so.
+  // A strip is read in pieces of at most 2 KiB a row: 32 KiB. While one is tested the next two are on their way, and
+  // all must fit the second-level cache beside what is written.
   static constexpr std::int64_t kPieceGroups = 32 / sizeof(T);
   static constexpr std::int64_t kLine = 64 / sizeof(T);  // values in a cache line
   static_assert(kPieceGroups <= VolumeBricks::kMostGroups);

@@ -194,7 +194,7 @@ class VoxelStream<T>::BuilderOf final : public VoxelStream<T>::Builder {
 template <class T>
 VoxelStream<T>::VoxelStream(const std::array<std::int64_t, 3>& size, ValueRange<T> inside, VolumePlacement placement,
                             Frame frame, Work work)
-    : builder_(std::make_unique<BuilderOf<detail::InRange<T>>>(detail::InRange<T>(inside.low, inside.high), size,
+    : builder_(std::make_unique<BuilderOf<detail::InRange<T>>>(detail::InRange<T>{inside.low, inside.high}, size,
                                                                placement, std::move(frame), std::move(work))) {}
 
 template <class T>

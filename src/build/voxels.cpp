@@ -82,7 +82,7 @@ Octree build(const VolumeView<T>& volume, const Inside& inside, const VolumePlac
 template <class T>
 Octree octree_from_voxels(const VolumeView<T>& volume, ValueRange<T> inside, VolumePlacement placement, Frame frame,
                           const Work& work) {
-  return build(volume, detail::InRange<T>(inside.low, inside.high), placement, std::move(frame), work);
+  return build(volume, detail::InRange<T>{inside.low, inside.high}, placement, std::move(frame), work);
 }
 
 template <class T>

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "feature_edges.h"
-#include "motion/centre_kernel.h"
+#include "octree/simd_kernels.h"
 
 // Highway compiles what follows once for every instruction set, and chooses when the program runs.
 #undef HWY_TARGET_INCLUDE

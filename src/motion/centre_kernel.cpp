@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "octree/simd_kernels.h"
+
 // Highway compiles what follows once for every instruction set, and chooses when the program runs.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "motion/centre_kernel.cpp"
@@ -151,8 +153,6 @@ namespace {
 
 HWY_EXPORT(look_up_lanes);
 
-bool scalar_wanted = false;
-
 void look_up_scalar(const CentreSteps& steps, const Neighbourhood& source, std::span<BrickLookUp> bricks) {
   Blocks blocks;
   source.for_each_row([&](std::size_t y, std::size_t z) {
@@ -183,27 +183,8 @@ void look_up_scalar(const CentreSteps& steps, const Neighbourhood& source, std::
 }  // namespace
 
 void look_up(const CentreSteps& steps, const Neighbourhood& source, std::span<BrickLookUp> bricks) {
-  if (scalar_wanted) return look_up_scalar(steps, source, bricks);
+  if (scalar_kernel_wanted()) return look_up_scalar(steps, source, bricks);
   HWY_DYNAMIC_DISPATCH(look_up_lanes)(steps, source, bricks);
-}
-
-std::vector<std::string> centre_kernels() {
-  std::vector<std::string> names;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) names.emplace_back(hwy::TargetName(target));
-  names.emplace_back("scalar");
-  return names;
-}
-
-bool scalar_kernel_wanted() { return scalar_wanted; }
-
-void use_centre_kernel(const std::string& name) {
-  scalar_wanted = name == "scalar";
-  std::int64_t wanted = 0;  // all that there are
-  hwy::SetSupportedTargetsForTest(0);
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
-    if (name == hwy::TargetName(target)) wanted = target;
-  hwy::SetSupportedTargetsForTest(wanted);
-  hwy::GetChosenTarget().DeInit();
 }
 
 }  // namespace blackleaf::detail

@@ -15,8 +15,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "neighbourhood.h"
 
@@ -57,12 +55,5 @@ struct BrickLookUp {
 
 /// Answers them. Requires: a source of level 3 that holds the boxes.
 void look_up(const CentreSteps& steps, const Neighbourhood& source, std::span<BrickLookUp> bricks);
-
-/// The kernels that this machine can run, best first; the last is "scalar".
-std::vector<std::string> centre_kernels();
-/// Makes look_up use one of them from now on; the empty name is the best. For tests; not while look_up runs.
-void use_centre_kernel(const std::string& name);
-/// True while it is "scalar", for kernels of other files.
-bool scalar_kernel_wanted();
 
 }  // namespace blackleaf::detail

@@ -1,7 +1,7 @@
 #include "sweep_kernel.h"
 
-#include "centre_kernel.h"
 #include "octree/brick.h"
+#include "octree/simd_kernels.h"
 
 // Highway compiles what follows once for every instruction set, and chooses when the program runs.
 #undef HWY_TARGET_INCLUDE

@@ -8,7 +8,7 @@
 #include "blackleaf/set_operations.h"
 #include "contact/contact_node.h"
 #include "contact/exact_boxes.h"
-#include "motion/centre_kernel.h"
+#include "octree/simd_kernels.h"
 #include "reference/dense_motion.h"
 #include "reference/exact_contact.h"
 
@@ -182,14 +182,14 @@ TEST(Interference, IsTheSameByEveryKernel) {
   for (int i = 0; i < 60; ++i) motions.push_back(reference::random_motion(6, random));
   for (const Meaning meaning : {Meaning::exact, Meaning::voxelised}) {
     std::vector<bool> expected;
-    for (const std::string& kernel : detail::centre_kernels()) {
-      detail::use_centre_kernel(kernel);
+    for (const std::string& kernel : detail::simd_kernels()) {
+      detail::use_simd_kernel(kernel);
       std::vector<bool> answers;
       for (const Motion& motion : motions) answers.push_back(interferes(a, b, motion, meaning));
       if (expected.empty()) expected = answers;
       EXPECT_EQ(answers, expected) << kernel;
     }
-    detail::use_centre_kernel("");
+    detail::use_simd_kernel("");
   }
 }
 

@@ -4,7 +4,7 @@
 #include "blackleaf/leaves.h"
 #include "blackleaf/move.h"
 #include "blackleaf/set_operations.h"
-#include "motion/centre_kernel.h"
+#include "octree/simd_kernels.h"
 #include "reference/dense_motion.h"
 
 namespace blackleaf {
@@ -50,15 +50,15 @@ TEST(Translate, LargerUniversesWithEveryKernel) {
     if (trial % 3 == 0)  // multiples of powers of two, not the same on every axis
       for (std::int64_t& part : by) part = part / 4 * (std::int64_t{1} << random() % 5);
     const Octree octree = reference::octree(grid), expected = reference::octree(reference::translate(grid, by));
-    for (const std::string& kernel : detail::centre_kernels()) {
+    for (const std::string& kernel : detail::simd_kernels()) {
       SCOPED_TRACE(kernel);
-      detail::use_centre_kernel(kernel);
+      detail::use_simd_kernel(kernel);
       ASSERT_TRUE(translate(octree, by, Leaving::clip, {.threads = 1, .progress = {}}) == expected);
     }
     for (const int threads : {2, 3, 7})
       ASSERT_TRUE(translate(octree, by, Leaving::clip, {.threads = threads, .progress = {}}) == expected);
   }
-  detail::use_centre_kernel("");
+  detail::use_simd_kernel("");
 }
 
 TEST(Translate, PowersOfTwoKeepTheTree) {

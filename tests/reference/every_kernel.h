@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "motion/centre_kernel.h"
+#include "octree/simd_kernels.h"
 
 namespace blackleaf::reference {
 
@@ -24,7 +24,7 @@ class EveryKernel {
       if (std::ranges::find(kernels_, wanted) == kernels_.end())
         std::cout << "the kernel " << wanted << " is not available on this machine, so it is not tested\n";
   }
-  ~EveryKernel() { detail::use_centre_kernel(""); }
+  ~EveryKernel() { detail::use_simd_kernel(""); }
   EveryKernel(const EveryKernel&) = delete;
   EveryKernel& operator=(const EveryKernel&) = delete;
 
@@ -32,13 +32,13 @@ class EveryKernel {
   void run(Test test) const {
     for (const std::string& kernel : kernels_) {
       SCOPED_TRACE(kernel);
-      detail::use_centre_kernel(kernel);
+      detail::use_simd_kernel(kernel);
       test();
     }
   }
 
  private:
-  std::vector<std::string> kernels_ = detail::centre_kernels();
+  std::vector<std::string> kernels_ = detail::simd_kernels();
 };
 
 }  // namespace blackleaf::reference
