@@ -142,6 +142,7 @@ std::vector<Stroke> strokes_of(std::span<FoundPieces* const> parts, const ClassB
   }
   team.for_each_index(filled.size(), [&](std::size_t i) { filled[i].unite(); });
   std::vector<std::size_t> places;
+  places.reserve(filled.size());
   std::size_t count = 0;
   for (const Bucket& bucket : filled) places.push_back(std::exchange(count, count + bucket.count()));
   std::vector<Stroke> strokes(count);
