@@ -13,6 +13,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#ifndef BLACKLEAF_VOLUME_TYPES  // this file is read once for every instruction set
+#define BLACKLEAF_VOLUME_TYPES(DO) \
+  DO(uint8_t) DO(int8_t) DO(uint16_t) DO(int16_t) DO(uint32_t) DO(int32_t) DO(float) DO(double)
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace blackleaf::detail {
 namespace HWY_NAMESPACE {
@@ -53,20 +58,7 @@ HWY_INLINE void range_lanes(const T* values, std::size_t words, T low, T high, s
   void range_lanes_##T(const T* values, std::size_t words, T low, T high, std::uint64_t* out) { \
     range_lanes<T>(values, words, low, high, out);                                              \
   }
-using u8 = std::uint8_t;
-using i8 = std::int8_t;
-using u16 = std::uint16_t;
-using i16 = std::int16_t;
-using u32 = std::uint32_t;
-using i32 = std::int32_t;
-BLACKLEAF_RANGE_LANES(u8)
-BLACKLEAF_RANGE_LANES(i8)
-BLACKLEAF_RANGE_LANES(u16)
-BLACKLEAF_RANGE_LANES(i16)
-BLACKLEAF_RANGE_LANES(u32)
-BLACKLEAF_RANGE_LANES(i32)
-BLACKLEAF_RANGE_LANES(float)
-BLACKLEAF_RANGE_LANES(double)
+BLACKLEAF_VOLUME_TYPES(BLACKLEAF_RANGE_LANES)
 #undef BLACKLEAF_RANGE_LANES
 
 }  // namespace HWY_NAMESPACE
@@ -77,26 +69,12 @@ HWY_AFTER_NAMESPACE();
 namespace blackleaf::detail {
 namespace {
 
-using u8 = std::uint8_t;
-using i8 = std::int8_t;
-using u16 = std::uint16_t;
-using i16 = std::int16_t;
-using u32 = std::uint32_t;
-using i32 = std::int32_t;
-
 #define BLACKLEAF_RANGE_WORDS(T)                                                            \
   HWY_EXPORT(range_lanes_##T);                                                              \
   void range_words(const T* values, std::size_t words, T low, T high, std::uint64_t* out) { \
     HWY_DYNAMIC_DISPATCH(range_lanes_##T)(values, words, low, high, out);                   \
   }
-BLACKLEAF_RANGE_WORDS(u8)
-BLACKLEAF_RANGE_WORDS(i8)
-BLACKLEAF_RANGE_WORDS(u16)
-BLACKLEAF_RANGE_WORDS(i16)
-BLACKLEAF_RANGE_WORDS(u32)
-BLACKLEAF_RANGE_WORDS(i32)
-BLACKLEAF_RANGE_WORDS(float)
-BLACKLEAF_RANGE_WORDS(double)
+BLACKLEAF_VOLUME_TYPES(BLACKLEAF_RANGE_WORDS)
 #undef BLACKLEAF_RANGE_WORDS
 
 template <class T>
@@ -126,14 +104,7 @@ void range_bits(const T* values, std::size_t count, T low, T high, std::uint64_t
 }
 
 #define BLACKLEAF_INSTANTIATE(T) template void range_bits<T>(const T*, std::size_t, T, T, std::uint64_t*);
-BLACKLEAF_INSTANTIATE(u8)
-BLACKLEAF_INSTANTIATE(i8)
-BLACKLEAF_INSTANTIATE(u16)
-BLACKLEAF_INSTANTIATE(i16)
-BLACKLEAF_INSTANTIATE(u32)
-BLACKLEAF_INSTANTIATE(i32)
-BLACKLEAF_INSTANTIATE(float)
-BLACKLEAF_INSTANTIATE(double)
+BLACKLEAF_VOLUME_TYPES(BLACKLEAF_INSTANTIATE)
 #undef BLACKLEAF_INSTANTIATE
 
 }  // namespace blackleaf::detail

@@ -125,13 +125,6 @@ class Bucket {
 
 }  // namespace
 
-void append_strokes(std::span<const Piece> pieces, const PictureLines& picture, std::vector<Stroke>& strokes) {
-  for_each_united(pieces, [&](std::int64_t key, std::int64_t low, std::int64_t high) {
-    const Stroke stroke{picture.point(key, low), picture.point(key, high)};
-    if (!draws_nothing(stroke)) strokes.push_back(stroke);
-  });
-}
-
 std::vector<Stroke> strokes_of(std::span<FoundPieces* const> parts, const ClassBuckets& buckets,
                                std::span<const ClassLines> classes, Team& team) {
   std::vector<Bucket> filled;

@@ -61,10 +61,6 @@ class PictureLines {
   Eigen::Vector2d units_;  // the denominator times the axes' lengths
 };
 
-/// Unites pieces that overlap or touch and appends one stroke for each maximal piece, in order of (key, low).
-/// Requires: `pieces` is sorted and belongs to the line class.
-void append_strokes(std::span<const Piece> pieces, const PictureLines& picture, std::vector<Stroke>& strokes);
-
 struct ClassLines {
   unsigned line_class;
   PictureLines picture;

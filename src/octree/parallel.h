@@ -30,6 +30,15 @@ class Progress {
       throw Error(ErrorCode::cancelled, "interrupted");
   }
 
+  /// body(i), and a step.
+  template <class Body>
+  auto after(const Body& body) {
+    return [this, &body](std::size_t i) {
+      body(i);
+      step();
+    };
+  }
+
  private:
   const Work& work_;
   std::size_t steps_;
@@ -58,10 +67,7 @@ void with_threads(const Work& work, const Job& job) {
 template <class Body>
 void for_each_index(std::size_t count, const Work& work, const Body& body) {
   Progress progress(work, count);
-  const auto step = [&](std::size_t i) {
-    body(i);
-    progress.step();
-  };
+  const auto step = progress.after(body);
   if (thread_count(work) == 1) {
     for (std::size_t i = 0; i < count; ++i) step(i);
   } else if (kPlainThreads) {

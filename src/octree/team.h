@@ -52,10 +52,7 @@ class Team {
   template <class Body>
   void for_each_index(std::size_t count, const Work& work, const Body& body) {
     Progress progress(work, count);
-    const auto step = [&](std::size_t i) {
-      body(i);
-      progress.step();
-    };
+    const auto step = progress.after(body);
     if (threads_ == 1) {
       for (std::size_t i = 0; i < count; ++i) step(i);
       return;

@@ -17,6 +17,7 @@
 #include "draw/visibility.h"
 #include "reference/dense_grid.h"
 #include "reference/every_kernel.h"
+#include "reference/sorted_strokes.h"
 #include "stroke_laws.h"
 
 namespace blackleaf {
@@ -37,11 +38,9 @@ class OneByOne {
     detail::corner_walk(octree, edges);
     std::vector<Stroke> strokes;
     for (unsigned line_class = 0; line_class < 3; ++line_class) {
-      std::vector<Piece>& pieces = all.pieces_[line_class];
-      std::sort(pieces.begin(), pieces.end());
       for (const EdgeFamily& family : all.families_)
         if (family.mode != EdgeFamily::Mode::end_on && family.line_class == line_class) {
-          detail::append_strokes(pieces, detail::PictureLines(family, view), strokes);
+          reference::append_strokes(all.pieces_[line_class], detail::PictureLines(family, view), strokes);
           break;
         }
     }

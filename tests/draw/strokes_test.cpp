@@ -11,6 +11,7 @@
 
 #include "blackleaf/drawing.h"
 #include "octree/team.h"
+#include "reference/sorted_strokes.h"
 #include "stroke_laws.h"
 
 namespace blackleaf {
@@ -57,12 +58,9 @@ class Strokes {
   }
 
   // One class after the other, sorted as a whole.
-  std::vector<Stroke> expected(Pieces pieces) const {
+  std::vector<Stroke> expected(const Pieces& pieces) const {
     std::vector<Stroke> strokes;
-    for (const ClassLines& of : classes_) {
-      std::sort(pieces[of.line_class].begin(), pieces[of.line_class].end());
-      append_strokes(pieces[of.line_class], of.picture, strokes);
-    }
+    for (const ClassLines& of : classes_) reference::append_strokes(pieces[of.line_class], of.picture, strokes);
     return strokes;
   }
 
